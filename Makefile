@@ -1,0 +1,39 @@
+# A fresh clone needs nothing else: `make laundry` and `make test` set up .venv and run.
+# The first of these that runs and is recent enough makes the virtual environment.
+PYTHONS := python3.13 python3.12 python3
+PY := .venv/bin/python
+ARGS ?=
+
+.PHONY: setup laundry relocation test lint clean
+
+setup: .venv/.installed
+
+.venv/.installed: pyproject.toml constraints.txt
+	@test -x $(PY) || for p in $(PYTHONS); do \
+	  if $$p -c 'import sys; sys.exit(sys.version_info < (3, 12))' 2>/dev/null; then \
+	    echo "making .venv with $$p"; $$p -m venv .venv && break; fi; done; \
+	  test -x $(PY) || { echo "needs Python 3.12 or newer: tried $(PYTHONS)" >&2; exit 1; }
+	$(PY) -m pip install --quiet --disable-pip-version-check -c constraints.txt -e ".[test]"
+	@touch $@
+
+laundry: setup
+	$(PY) -m geosacs_drake.run_laundry $(ARGS)
+
+relocation: setup
+	$(PY) -m geosacs_drake.run_relocation $(ARGS)
+
+test: setup
+	$(PY) -m pytest $(ARGS)
+
+lint: setup
+	$(PY) -m ruff check .
+	$(PY) -m ruff format --check .
+	$(PY) -m mypy
+
+# `make bench-NAME` runs benchmarks/bench_NAME.py, with the rivals in an extra of their own.
+bench-%: setup
+	$(PY) -m pip install --quiet --disable-pip-version-check -c constraints.txt -e ".[bench]"
+	$(PY) -m benchmarks.bench_$* $(ARGS)
+
+clean:
+	rm -rf .venv build dist *.egg-info

@@ -1,0 +1,1 @@
+"""Canal surfaces: demonstrations in, a canal out, points that travel along it. Knows nothing of Drake."""

@@ -1,0 +1,1 @@
+"""Drake systems of GeoSACS, and the builders that wire them."""

@@ -1,0 +1,1 @@
+"""GeoSACS on Drake: what a person runs."""

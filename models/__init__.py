@@ -1,0 +1,1 @@
+"""Data that ships with the project: robot, machine, things, demonstrations, scenarios."""
