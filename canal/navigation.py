@@ -1,0 +1,320 @@
+"""Travel along a canal: where we are, what a thumb does to it, and what comes next (paper IV-C to IV-E, V-D, V-E).
+
+The state is the disk, the point (η, φ) on it and the leg of the cycle *home, pick, home, place, home*. A step moves
+along the canal, or, while the stick is off centre, on the disk alone. No clock and no robot: time comes in as `dt`.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, fields, replace
+from enum import IntEnum
+from typing import Literal
+
+import numpy as np
+
+from canal.errors import InputError
+from canal.surface import CanalSurface
+
+JOYSTICK_SIZE = 6
+"""Joystick vector: k_x, k_y in [-1, 1], then the levels (0 or 1) of the buttons gripper, reverse, start, stop."""
+
+
+class Leg(IntEnum):
+    """The four legs of the cycle, in order (paper V-E)."""
+
+    HOME_TO_PICK = 0
+    PICK_TO_HOME = 1
+    HOME_TO_PLACE = 2
+    PLACE_TO_HOME = 3
+
+    @property
+    def direction(self) -> int:
+        """+1 where the disk index grows, -1 where it falls."""
+        return 1 if self in (Leg.PICK_TO_HOME, Leg.HOME_TO_PLACE) else -1
+
+    @property
+    def homeward(self) -> bool:
+        """Whether the leg ends at home, and so converges (paper V-E)."""
+        return self in (Leg.PICK_TO_HOME, Leg.PLACE_TO_HOME)
+
+    @property
+    def reversed(self) -> Leg:
+        """The same half of the canal the other way (backtracking, paper IV-E)."""
+        return Leg(self ^ 1)
+
+    @property
+    def next(self) -> Leg:
+        """The leg that follows in the cycle."""
+        return Leg((self + 1) % 4)
+
+
+@dataclass
+class NavigationOptions:
+    """How a canal is travelled. Times in seconds, speeds relative to the demonstrations'."""
+
+    speed_scale: float = 1.0
+    """1: a whole pass takes the mean moving time of the demonstrations; 2: half of it."""
+    delta: float = 150.0
+    """Sensitivity of the stick, δ of paper Table I: full stick moves 20/δ m/s."""
+    dead_zone: float = 0.1
+    """A stick shorter than this is taken as centred."""
+    eta_f: float = 0.0
+    """Final ratio η_f of the homeward legs: 0 converges to the directrix, 1 diverges to the wall."""
+    decay: Literal["leg", "paper"] = "leg"
+    """`leg`: η = η_f + (η_0 - η_f) exp(-a u²), u the part of the leg travelled. `paper`: exp(-λ·disks), Eq. in IV-C."""
+    decay_a: float = 11.7
+    """a of the default decay: what the robot's code comes to over 216 disks."""
+    decay_lambda: float = 5e-4
+    """λ of paper Table I, per disk; for `decay: paper`."""
+    wait_at_ends: bool = True
+    """At pick and place, wait for the operator: a grip, a release or a reversal goes on."""
+    end_zone: float = 0.1
+    """Last part of an outward leg in which a grasp (a release) counts as made at pick (at place) and sends home."""
+    gripper_pause_s: float = 0.25
+    """Shortest pause after the gripper button; it lasts while the fingers move."""
+    gripper_pause_limit_s: float = 2.0
+    """Longest pause: fingers that never come to rest do not hold the arm up."""
+
+    def __post_init__(self) -> None:
+        for name in ("speed_scale", "delta", "decay_a", "gripper_pause_limit_s"):
+            if not getattr(self, name) > 0 or not math.isfinite(getattr(self, name)):
+                raise InputError(f"navigation.{name} is {getattr(self, name)}; give a number above 0")
+        for name in ("eta_f", "dead_zone", "end_zone"):
+            if not 0 <= getattr(self, name) <= 1:
+                raise InputError(f"navigation.{name} is {getattr(self, name)}; give a number in [0, 1]")
+        if self.decay not in ("leg", "paper"):
+            raise InputError(f"navigation.decay is {self.decay!r}; give 'leg' or 'paper'")
+
+
+@dataclass(slots=True, frozen=True)
+class NavigationState:
+    """Where we are and what has been counted; floats throughout, so that it lives in a Drake context as a vector."""
+
+    disk: float
+    """Continuous disk index in [0, N_f - 1]; 0 is pick, the middle home, the last place."""
+    eta: float = 0.0
+    """Ratio η of the distance from the disk's centre to its radius, in [0, 1]."""
+    phi: float = 0.0
+    """Angle φ [rad] of the point on the disk, from x_s towards y_s."""
+    leg: float = float(Leg.HOME_TO_PICK)
+    """The `Leg` that is being travelled."""
+    anchor_disk: float = 0.0
+    """Disk where the ratio strategy last started: the leg's start, or where the last correction ended."""
+    anchor_eta: float = 0.0
+    """η_0, the ratio at the anchor."""
+    running: float = 0.0
+    """1 after start, 0 after stop."""
+    gripper_closed: float = 0.0
+    """1 when the gripper is told to close."""
+    pause_s: float = -1.0
+    """Time since the gripper button; negative when no pause is on."""
+    correcting: float = 0.0
+    """1 while the stick moves the point on the disk."""
+    waiting: float = 0.0
+    """1 while standing at pick or place for the operator."""
+    held_gripper: float = 0.0
+    """Level of the gripper button at the last step (for its edge); likewise the next three."""
+    held_reverse: float = 0.0
+    """See `held_gripper`."""
+    held_start: float = 0.0
+    """See `held_gripper`."""
+    held_stop: float = 0.0
+    """See `held_gripper`."""
+    corrections: float = 0.0
+    """Corrections so far: times that the stick left its centre."""
+    backtracks: float = 0.0
+    """Reversals so far."""
+    correction_time_s: float = 0.0
+    """Time spent correcting [s]."""
+    correction_distance_m: float = 0.0
+    """Length of the way that corrections commanded on the disks [m]."""
+
+    def to_vector(self) -> np.ndarray:
+        """All fields in order. Shape (len(fields),)."""
+        return np.array([getattr(self, name) for name in FIELD_NAMES])
+
+    @staticmethod
+    def from_vector(vector: np.ndarray) -> NavigationState:
+        """Inverse of `to_vector`."""
+        return NavigationState(*np.asarray(vector, dtype=float).tolist())
+
+
+FIELD_NAMES: tuple[str, ...] = tuple(f.name for f in fields(NavigationState))
+"""Names of the components of the state vector, in order."""
+
+
+def initial_state(canal: CanalSurface) -> NavigationState:
+    """At home, on the directrix, about to go to pick, not yet started."""
+    return NavigationState(disk=float(canal.home_disk), anchor_disk=float(canal.home_disk))
+
+
+def phase(canal: CanalSurface, disk: float) -> float:
+    """The paper's d in [-1, 1]: -1 pick, 0 home, +1 place (V-E)."""
+    home = canal.home_disk
+    return (disk - home) / (home if disk < home else canal.n_disks - 1 - home)
+
+
+def leg_end(canal: CanalSurface, leg: Leg) -> float:
+    """Disk at which a leg ends."""
+    if leg.homeward:
+        return float(canal.home_disk)
+    return 0.0 if leg is Leg.HOME_TO_PICK else float(canal.n_disks - 1)
+
+
+def strategy_ratio(
+    canal: CanalSurface, state: NavigationState, disk: float, options: NavigationOptions
+) -> float:
+    """Ratio η that the leg's strategy gives at `disk`: fixed outwards, decaying towards home (paper IV-C)."""
+    leg = Leg(int(state.leg))
+    if not leg.homeward:
+        return state.anchor_eta
+    travelled = abs(disk - state.anchor_disk)
+    if options.decay == "paper":
+        decay = math.exp(-options.decay_lambda * travelled)
+    else:
+        whole = abs(leg_end(canal, leg) - state.anchor_disk)
+        u = min(travelled / whole, 1.0) if whole > 0 else 1.0
+        decay = math.exp(-options.decay_a * u * u)
+    return options.eta_f + (state.anchor_eta - options.eta_f) * decay
+
+
+def step(
+    canal: CanalSurface,
+    state: NavigationState,
+    joystick: np.ndarray,
+    dt: float,
+    *,
+    gripper_moving: bool = False,
+    options: NavigationOptions | None = None,
+) -> NavigationState:
+    """One step of `dt` seconds under a joystick vector (see `JOYSTICK_SIZE`); a value that is not finite counts as 0.
+
+    While the stick is off centre s stands still and the point moves on its disk by (k_x x_s + k_y y_s)·20/δ·dt,
+    saturated at r(s) (paper V-D). Else the point goes along the canal by the leg's ratio strategy.
+    """
+    options = options or NavigationOptions()
+    k_x, k_y, *levels = (v if math.isfinite(v) else 0.0 for v in np.asarray(joystick, dtype=float).tolist())
+    gripper, reverse, start, stop = (level > 0.5 for level in levels)
+    if start and not state.held_start:
+        state = replace(state, running=1.0)
+    if stop and not state.held_stop:
+        state = replace(state, running=0.0)
+    if state.running:
+        if reverse and not state.held_reverse:
+            state = _reverse(state)
+        if gripper and not state.held_gripper:
+            state = _toggle_gripper(canal, state, options)
+    state = replace(
+        state,
+        held_gripper=float(gripper),
+        held_reverse=float(reverse),
+        held_start=float(start),
+        held_stop=float(stop),
+    )
+    if not state.running:
+        return _end_correction(state)
+    if state.pause_s >= 0:
+        elapsed = state.pause_s + dt
+        done = elapsed >= options.gripper_pause_limit_s or (
+            elapsed >= options.gripper_pause_s and not gripper_moving
+        )
+        return _end_correction(replace(state, pause_s=-1.0 if done else elapsed))
+    if math.hypot(k_x, k_y) > options.dead_zone:
+        return _correct(canal, state, k_x, k_y, dt, options)
+    return _advance(canal, _end_correction(state), dt, options)
+
+
+def _reverse(state: NavigationState) -> NavigationState:
+    """Backtracking: the same disks the other way, the strategy starting anew from here."""
+    return replace(
+        state,
+        leg=float(Leg(int(state.leg)).reversed),
+        anchor_disk=state.disk,
+        anchor_eta=state.eta,
+        waiting=0.0,
+        backtracks=state.backtracks + 1,
+    )
+
+
+def _toggle_gripper(
+    canal: CanalSurface, state: NavigationState, options: NavigationOptions
+) -> NavigationState:
+    """Close or open; a grasp at pick and a release at place turn towards home."""
+    closed = not state.gripper_closed
+    state = replace(state, gripper_closed=float(closed), pause_s=0.0)
+    leg = Leg(int(state.leg))
+    d = phase(canal, state.disk)
+    at_end = abs(d) >= 1 - options.end_zone
+    turns = (leg is Leg.HOME_TO_PICK and closed) or (leg is Leg.HOME_TO_PLACE and not closed)
+    if at_end and turns:
+        state = replace(state, leg=float(leg.next), anchor_disk=state.disk, anchor_eta=state.eta, waiting=0.0)
+    return state
+
+
+def _end_correction(state: NavigationState) -> NavigationState:
+    """When the stick is released, the strategy starts anew from the corrected point."""
+    if not state.correcting:
+        return state
+    return replace(state, correcting=0.0, anchor_disk=state.disk, anchor_eta=state.eta)
+
+
+def _correct(
+    canal: CanalSurface,
+    state: NavigationState,
+    k_x: float,
+    k_y: float,
+    dt: float,
+    options: NavigationOptions,
+) -> NavigationState:
+    """Move the point on its disk, saturated at the disk's edge (paper IV-D, V-D)."""
+    norm = math.hypot(k_x, k_y)
+    scale = 20.0 / options.delta * dt / max(norm, 1.0)
+    p = canal.point(state.disk, state.eta, state.phi)
+    x, y = canal.axes(state.disk)
+    eta, phi = canal.disk_coordinates(state.disk, p + scale * (k_x * x + k_y * y))
+    if canal.radius(state.disk) < MIN_RADIUS:
+        eta, phi = state.eta, state.phi
+    eta = min(eta, 1.0)
+    moved = canal.point(state.disk, eta, phi) - p
+    return replace(
+        state,
+        eta=eta,
+        phi=phi,
+        correcting=1.0,
+        corrections=state.corrections + (not state.correcting),
+        correction_time_s=state.correction_time_s + dt,
+        correction_distance_m=state.correction_distance_m + math.sqrt(float(moved @ moved)),
+    )
+
+
+MIN_RADIUS = 1e-9
+"""[m] Below this a disk is a point: there is nothing to correct, and the ratio is carried through it."""
+
+
+def disks_per_second(canal: CanalSurface, options: NavigationOptions) -> float:
+    """Speed of progress: a whole pass in the mean moving time of the demonstrations, scaled."""
+    return (canal.n_disks - 1) * options.speed_scale / canal.moving_time_s
+
+
+def _advance(
+    canal: CanalSurface, state: NavigationState, dt: float, options: NavigationOptions
+) -> NavigationState:
+    """Go along the canal for `dt`; through home into the next leg, up to pick and place, turning there if told."""
+    travel = disks_per_second(canal, options) * dt
+    # A step may pass home and more: what is left over is travelled on the next leg, so that the control rate
+    # changes nothing.
+    while True:
+        leg = Leg(int(state.leg))
+        end = leg_end(canal, leg)
+        ahead = (end - state.disk) * leg.direction
+        if travel < ahead:
+            disk = state.disk + leg.direction * travel
+            return replace(state, disk=disk, eta=strategy_ratio(canal, state, disk, options), waiting=0.0)
+        eta = strategy_ratio(canal, state, end, options)
+        if not leg.homeward and options.wait_at_ends:
+            return replace(state, disk=end, eta=eta, waiting=1.0)
+        travel -= max(ahead, 0.0)
+        state = replace(
+            state, disk=end, eta=eta, leg=float(leg.next), anchor_disk=end, anchor_eta=eta, waiting=0.0
+        )
