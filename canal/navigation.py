@@ -162,9 +162,7 @@ def leg_end(canal: CanalSurface, leg: Leg) -> float:
     return 0.0 if leg is Leg.HOME_TO_PICK else float(canal.n_disks - 1)
 
 
-def strategy_ratio(
-    canal: CanalSurface, state: NavigationState, disk: float, options: NavigationOptions
-) -> float:
+def strategy_ratio(canal: CanalSurface, state: NavigationState, disk: float, options: NavigationOptions) -> float:
     """Ratio η that the leg's strategy gives at `disk`: fixed outwards, decaying towards home (paper IV-C)."""
     leg = Leg(int(state.leg))
     if not leg.homeward:
@@ -216,9 +214,7 @@ def step(
         return _end_correction(state)
     if state.pause_s >= 0:
         elapsed = state.pause_s + dt
-        done = elapsed >= options.gripper_pause_limit_s or (
-            elapsed >= options.gripper_pause_s and not gripper_moving
-        )
+        done = elapsed >= options.gripper_pause_limit_s or (elapsed >= options.gripper_pause_s and not gripper_moving)
         return _end_correction(replace(state, pause_s=-1.0 if done else elapsed))
     if math.hypot(k_x, k_y) > options.dead_zone:
         return _correct(canal, state, k_x, k_y, dt, options)
@@ -237,9 +233,7 @@ def _reverse(state: NavigationState) -> NavigationState:
     )
 
 
-def _toggle_gripper(
-    canal: CanalSurface, state: NavigationState, options: NavigationOptions
-) -> NavigationState:
+def _toggle_gripper(canal: CanalSurface, state: NavigationState, options: NavigationOptions) -> NavigationState:
     """Close or open; a grasp at pick and a release at place turn towards home."""
     closed = not state.gripper_closed
     state = replace(state, gripper_closed=float(closed), pause_s=0.0)
@@ -297,9 +291,7 @@ def disks_per_second(canal: CanalSurface, options: NavigationOptions) -> float:
     return (canal.n_disks - 1) * options.speed_scale / canal.moving_time_s
 
 
-def _advance(
-    canal: CanalSurface, state: NavigationState, dt: float, options: NavigationOptions
-) -> NavigationState:
+def _advance(canal: CanalSurface, state: NavigationState, dt: float, options: NavigationOptions) -> NavigationState:
     """Go along the canal for `dt`; through home into the next leg, up to pick and place, turning there if told."""
     travel = disks_per_second(canal, options) * dt
     # A step may pass home and more: what is left over is travelled on the next leg, so that the control rate
@@ -315,6 +307,4 @@ def _advance(
         if not leg.homeward and options.wait_at_ends:
             return replace(state, disk=end, eta=eta, waiting=1.0)
         travel -= max(ahead, 0.0)
-        state = replace(
-            state, disk=end, eta=eta, leg=float(leg.next), anchor_disk=end, anchor_eta=eta, waiting=0.0
-        )
+        state = replace(state, disk=end, eta=eta, leg=float(leg.next), anchor_disk=end, anchor_eta=eta, waiting=0.0)
