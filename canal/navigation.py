@@ -121,6 +121,10 @@ class NavigationState:
     """See `held_gripper`."""
     held_stop: float = 0.0
     """See `held_gripper`."""
+    held_alarm: float = 0.0
+    """Level of the alarm at the last step."""
+    blocked: float = 0.0
+    """1 after an alarm, until the person reverses or starts anew."""
     corrections: float = 0.0
     """Corrections so far: times that the stick left its centre."""
     backtracks: float = 0.0
@@ -184,18 +188,22 @@ def step(
     dt: float,
     *,
     gripper_moving: bool = False,
+    alarm: bool = False,
     options: NavigationOptions | None = None,
 ) -> NavigationState:
     """One step of `dt` seconds under a joystick vector (see `JOYSTICK_SIZE`); a value that is not finite counts as 0.
 
     While the stick is off centre s stands still and the point moves on its disk by (k_x x_s + k_y y_s)·20/δ·dt,
-    saturated at r(s) (paper V-D). Else the point goes along the canal by the leg's ratio strategy.
+    saturated at r(s) (paper V-D). Else the point goes along the canal by the leg's ratio strategy. A rising
+    `alarm` blocks all motion and leaves the gripper as it is, until the person reverses (or starts anew).
     """
     options = options or NavigationOptions()
     k_x, k_y, *levels = (v if math.isfinite(v) else 0.0 for v in np.asarray(joystick, dtype=float).tolist())
     gripper, reverse, start, stop = (level > 0.5 for level in levels)
+    if alarm and not state.held_alarm:
+        state = replace(state, blocked=1.0)
     if start and not state.held_start:
-        state = replace(state, running=1.0)
+        state = replace(state, running=1.0, blocked=0.0)
     if stop and not state.held_stop:
         state = replace(state, running=0.0)
     if state.running:
@@ -209,8 +217,9 @@ def step(
         held_reverse=float(reverse),
         held_start=float(start),
         held_stop=float(stop),
+        held_alarm=float(alarm),
     )
-    if not state.running:
+    if not state.running or state.blocked:
         return _end_correction(state)
     if state.pause_s >= 0:
         elapsed = state.pause_s + dt
@@ -229,6 +238,7 @@ def _reverse(state: NavigationState) -> NavigationState:
         anchor_disk=state.disk,
         anchor_eta=state.eta,
         waiting=0.0,
+        blocked=0.0,
         backtracks=state.backtracks + 1,
     )
 
