@@ -1,0 +1,98 @@
+"""What "placed" means (SPEC section 7): one goal a thing, judged alike by the monitor and by an operator's eye."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+
+
+class Goal(Protocol):
+    """Where a thing belongs. Poses are vectors (position, quaternion w x y z), bounds (min, max), both in W."""
+
+    @property
+    def position(self) -> np.ndarray:
+        """Where a person would look: the point in W [m] that the thing is brought to. Shape (3,)."""
+        ...
+
+    @property
+    def precise(self) -> bool:
+        """Whether the thing must come to `position` itself, or just be inside."""
+        ...
+
+    def placed(self, pose: np.ndarray, bounds: np.ndarray) -> bool:
+        """Whether a thing with this pose (7,) and these bounds (6,) is where it belongs; rest is judged elsewhere."""
+        ...
+
+
+@dataclass(frozen=True)
+class DrumGoal:
+    """Inside a front-loading drum: the whole shape behind the door's plane and within the drum."""
+
+    p_WD: np.ndarray
+    """Centre of the door's plane in W [m]. Shape (3,)."""
+    inward: np.ndarray
+    """Unit vector along the drum's axis, into the machine, in W; along an axis of W. Shape (3,)."""
+    depth: float
+    """Depth of the drum behind the door's plane [m]."""
+    radius: float
+    """Radius of the drum [m]."""
+    clearance: float = 0.01
+    """What a shape may reach past the ideal cylinder [m]: contact is compliant."""
+
+    @property
+    def position(self) -> np.ndarray:
+        """The middle of the drum."""
+        return self.p_WD + 0.5 * self.depth * self.inward
+
+    @property
+    def precise(self) -> bool:
+        """Anywhere in the drum will do."""
+        return False
+
+    def placed(self, pose: np.ndarray, bounds: np.ndarray) -> bool:
+        """The bounds lie behind the door's plane, and their middle in the cylinder of the drum."""
+        low, high = bounds[:3], bounds[3:]
+        ends = np.array([low, high]) - self.p_WD
+        depths = ends @ self.inward
+        middle = ends.mean(axis=0)
+        across = middle - (middle @ self.inward) * self.inward
+        return bool(
+            depths.min() >= -self.clearance
+            and depths.max() <= self.depth + self.clearance
+            and np.linalg.norm(across) <= self.radius
+        )
+
+
+@dataclass(frozen=True)
+class MarkGoal:
+    """At rest on a marked spot of a table."""
+
+    position: np.ndarray
+    """Where the thing's origin is when it stands on the mark, in W [m]. Shape (3,)."""
+    tolerance: float = 0.03
+    """Horizontal distance that is still on the mark [m] (SPEC section 7, task 1)."""
+    height_tolerance: float = 0.03
+    """Vertical distance [m]: it stands on the table, neither on the floor nor on something else."""
+    upright: bool = False
+    """Whether its z axis must point up (the cup)."""
+
+    @property
+    def precise(self) -> bool:
+        """The mark is the place."""
+        return True
+
+    def placed(self, pose: np.ndarray, bounds: np.ndarray) -> bool:
+        """Within the tolerances of the mark, upright where asked."""
+        error = pose[:3] - self.position
+        w, x, y, _z = pose[3:]
+        # z component of the body's z axis in W: 1 - 2 (x² + y²), for a unit quaternion.
+        leans = self.upright and 1 - 2 * (x * x + y * y) / (w * w + x * x + y * y + _z * _z) < COS_UPRIGHT
+        return bool(
+            np.hypot(error[0], error[1]) <= self.tolerance and abs(error[2]) <= self.height_tolerance and not leans
+        )
+
+
+COS_UPRIGHT = np.cos(np.deg2rad(15.0))
+"""A cup that leans by more than 15° is about to spill: not upright."""

@@ -1,0 +1,124 @@
+"""The simulated operator: late and noisy eyes (Drake's delay, seeded noise), and a thumb."""
+
+from __future__ import annotations
+
+import numpy as np
+from pydrake.math import RigidTransform
+from pydrake.systems.framework import Context, Diagram, DiagramBuilder, DiscreteValues, LeafSystem
+from pydrake.systems.primitives import DiscreteTimeDelay, Multiplexer
+
+from canal.navigation import FIELD_NAMES, JOYSTICK_SIZE, NavigationOptions, NavigationState
+from canal.surface import CanalSurface
+from diagrams.goals import Goal
+from diagrams.operator_policy import EYE, PERIOD, OperatorOptions, OperatorPolicy, Sight
+
+STATE_SIZE = len(FIELD_NAMES)
+
+
+class OperatorMind(LeafSystem):
+    """Turns what is seen into stick and buttons, 20 times a second.
+
+    ```
+    sight (13 n + 7 + STATE_SIZE) → OperatorMind → joystick (6)
+    ```
+
+    `sight` is item_poses (7 n, W), item_bounds (6 n, W), X_BT (7, B) and navigation_state, in this order.
+    """
+
+    def __init__(self, policy: OperatorPolicy, X_WB: RigidTransform, delay_s: float, noise_m: float) -> None:
+        """Decide by `policy`; the base stands at `X_WB`; `delay_s` is when the first sight arrives."""
+        super().__init__()
+        n = len(policy.goals)
+        self._policy, self._n = policy, n
+        self._X_BW = X_WB.inverse()
+        self._delay_s, self._noise_m = delay_s, noise_m
+        self._sight = self.DeclareVectorInputPort("sight", 13 * n + 7 + STATE_SIZE)
+        mind = self.DeclareDiscreteState(policy.initial())
+        hand = self.DeclareDiscreteState(JOYSTICK_SIZE)
+        self._mind, self._hand = mind, hand
+        self.DeclareStateOutputPort("joystick", hand)
+        self.DeclarePeriodicDiscreteUpdateEvent(PERIOD, 0.0, self._update)
+
+    def _update(self, context: Context, discrete: DiscreteValues) -> None:
+        time = context.get_time()
+        mind = context.get_discrete_state(self._mind).value()
+        if time > self._delay_s + PERIOD / 2:  # before that nothing has reached the eye
+            mind = self._policy.decide(mind, self._look(self._sight.Eval(context), time), time)
+        discrete.set_value(self._mind, mind)
+        discrete.set_value(self._hand, self._policy.joystick(mind, time))
+
+    def _look(self, sight: np.ndarray, time: float) -> Sight:
+        n = self._n
+        poses = sight[: 7 * n].reshape(n, 7).copy()
+        bounds = sight[7 * n : 13 * n].reshape(n, 6).copy()
+        rng = np.random.default_rng((self._policy.seed, EYE, round(time / PERIOD)))
+        wrong = rng.normal(0.0, self._noise_m, (n, 3))
+        poses[:, :3] += wrong
+        bounds += np.hstack([wrong, wrong])
+        placed = [g.placed(p, b) for g, p, b in zip(self._policy.goals, poses, bounds, strict=True)]
+        # A mark is met by the thing's origin; a crumpled thing is gripped at its middle.
+        seen = [
+            p[:3] if g.precise else (b[:3] + b[3:]) / 2
+            for g, p, b in zip(self._policy.goals, poses, bounds, strict=True)
+        ]
+        return Sight(
+            positions=np.array([self._X_BW.multiply(p) for p in seen]).reshape(n, 3),
+            placed=np.array(placed, dtype=bool),
+            p_BT=sight[13 * n : 13 * n + 3].copy(),
+            navigation=NavigationState.from_vector(sight[13 * n + 7 :]),
+        )
+
+
+class SimulatedOperator(Diagram):
+    """A person who sees as a person does, and has only a stick and four buttons.
+
+    ```
+          item_poses (7 n) →  ┌───────┐    ┌───────────────────┐    ┌──────────────┐
+         item_bounds (6 n) →  │ joined│ →  │ 0.25 s late, 20 Hz│ →  │ OperatorMind │ → joystick (6)
+                 X_BT (7)  →  │       │    └───────────────────┘    └──────────────┘
+          navigation_state →  └───────┘
+    ```
+    """
+
+    def __init__(
+        self,
+        *,
+        canal: CanalSurface,
+        goals: list[Goal],
+        X_WB: RigidTransform,
+        options: OperatorOptions | None = None,
+        navigation: NavigationOptions | None = None,
+        seed: int = 0,
+    ) -> None:
+        """A person who brings thing i to `goals[i]` by `canal`, from a base at `X_WB`; all draws from `seed`."""
+        super().__init__()
+        options = options or OperatorOptions()
+        navigation = navigation or NavigationOptions()
+        X_BW = X_WB.inverse()
+        policy = OperatorPolicy(
+            canal,
+            goals,
+            options,
+            stick_speed=20.0 / navigation.delta,
+            p_BG=np.array([X_BW.multiply(goal.position) for goal in goals]).reshape(-1, 3),
+            seed=seed,
+        )
+        n = len(goals)
+        sizes = {"item_poses": 7 * n, "item_bounds": 6 * n, "X_BT": 7, "navigation_state": STATE_SIZE}
+        builder = DiagramBuilder()
+        joined = builder.AddNamedSystem("sight", Multiplexer(list(sizes.values())))
+        mind = builder.AddNamedSystem("mind", OperatorMind(policy, X_WB, options.delay_s, options.noise_m))
+        late = builder.AddNamedSystem(
+            "late", DiscreteTimeDelay(PERIOD, round(options.delay_s / PERIOD), sum(sizes.values()))
+        )
+        for index, name in enumerate(sizes):
+            builder.ExportInput(joined.get_input_port(index), name)
+        builder.Connect(joined.get_output_port(), late.get_input_port())
+        builder.Connect(late.get_output_port(), mind.GetInputPort("sight"))
+        builder.ExportOutput(mind.GetOutputPort("joystick"), "joystick")
+        builder.BuildInto(self)
+
+    @staticmethod
+    def AddToBuilder(*, builder: DiagramBuilder, name: str = "simulated_operator", **kwargs) -> SimulatedOperator:
+        """Add a simulated operator to `builder`; `kwargs` as for the constructor."""
+        return builder.AddNamedSystem(name, SimulatedOperator(**kwargs))

@@ -1,0 +1,364 @@
+"""What a person at the table would do with the stick and the buttons; pure decisions, no Drake.
+
+The person sees (late and a little wrong) where the things, the gripper and the drawn path are. They move the stick in
+short ballistic pushes, each followed by a look at what came of it (intermittent control, as in human reaching), aim
+above the thing before the gripper comes down on it, check that a grip held, and go back where it did not.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from enum import IntEnum
+
+import numpy as np
+
+from canal.errors import InputError
+from canal.navigation import JOYSTICK_SIZE, Leg, NavigationState, phase
+from canal.surface import CanalSurface
+from diagrams.goals import Goal
+
+PERIOD = 0.05
+"""[s] A joystick is sampled at 20 Hz (paper V-D)."""
+
+
+class Button(IntEnum):
+    """Index of a button in the joystick vector."""
+
+    GRIPPER = 2
+    REVERSE = 3
+    START = 4
+    STOP = 5
+
+
+class Mode(IntEnum):
+    """What the person is about to do."""
+
+    BEGIN = 0
+    PICK = 1
+    LIFT = 2
+    CARRY = 3
+    LEAVE = 4
+    PUSH = 5
+    RETREAT = 6
+    FINISH = 7
+
+
+class Verdict(IntEnum):
+    """What the person thinks of a thing."""
+
+    TO_DO = 0
+    DONE = 1
+    GIVEN_UP = 2
+
+
+@dataclass
+class OperatorOptions:
+    """The simulated person. Times in seconds, distances in metres."""
+
+    delay_s: float = 0.25
+    """How late the person sees (a multiple of the 50 ms in which a stick is sampled)."""
+    noise_m: float = 0.003
+    """Standard deviation of where the person sees a thing, per axis."""
+    hand_noise: float = 0.08
+    """Relative standard deviation of a push of the stick, and its angle in radians."""
+    look_s: float = 0.15
+    """After a push has had its effect, how long the person looks before the next."""
+    press_s: float = 0.1
+    """How long a button is held."""
+    think_s: float = 0.4
+    """After a button, how long before anything else."""
+    aim_from: float = 0.62
+    """|d| from which the person aims: close enough to see where the path leads, still above the things."""
+    aim_until: float = 0.93
+    """|d| beyond which the fingers are among the things, and only a clear miss is worth another push."""
+    aim_tolerance_m: float = 0.006
+    """A miss smaller than this is left alone."""
+    end_tolerance_m: float = 0.015
+    """The same for a last push at the end, among the things."""
+    judge_at: float = 0.78
+    """d below which the gripper is clear of the goal, and the person judges what became of the thing."""
+    lift_m: float = 0.10
+    """Rise of the gripper after which the person checks that the thing came along."""
+    lost_m: float = 0.16
+    """A thing further than this from the gripper is not in it."""
+    tries: int = 5
+    """Attempts at one thing, and pushes at one that hangs out, before it is given up."""
+
+    def __post_init__(self) -> None:
+        if not (self.delay_s >= 0 and abs(self.delay_s / PERIOD - round(self.delay_s / PERIOD)) < 1e-9):
+            raise InputError(f"operator.delay_s is {self.delay_s}; give a multiple of {PERIOD} s")
+
+
+@dataclass(frozen=True)
+class Sight:
+    """What the person sees at one moment."""
+
+    positions: np.ndarray
+    """Middles of the things in B [m]. Shape (n, 3)."""
+    placed: np.ndarray
+    """Whether each looks placed. Shape (n,)."""
+    p_BT: np.ndarray
+    """The gripper's centre in B [m]. Shape (3,)."""
+    navigation: NavigationState
+    """The disk, the point and the path that are drawn on the screen."""
+
+
+@dataclass
+class OperatorState:
+    """The person's mind and hand; packed into a vector for the Context."""
+
+    mode: float = float(Mode.BEGIN)
+    thing: float = -1.0
+    """Index of the thing that is being handled; -1 for none."""
+    busy_until: float = 0.0
+    """Time [s] until which the person watches and decides nothing."""
+    stick_x: float = 0.0
+    stick_y: float = 0.0
+    stick_until: float = 0.0
+    """The stick is held off centre until then [s]."""
+    button: float = 0.0
+    """Index of the button that is held; 0 for none."""
+    button_until: float = 0.0
+    grip_height: float = 0.0
+    """Height of the gripper at the grip [m]."""
+    aimed: float = 0.0
+    """1 once the aim above the thing was good."""
+
+    SIZE = 10
+
+    @staticmethod
+    def unpack(vector: np.ndarray, n: int) -> tuple[OperatorState, np.ndarray, np.ndarray]:
+        """The state, the verdicts (n,) and the tries (n,) from a vector of SIZE + 2n."""
+        size = OperatorState.SIZE
+        return OperatorState(*vector[:size].tolist()), vector[size : size + n].copy(), vector[size + n :].copy()
+
+    def pack(self, verdicts: np.ndarray, tries: np.ndarray) -> np.ndarray:
+        """Inverse of `unpack`."""
+        mind = (self.mode, self.thing, self.busy_until, self.stick_x, self.stick_y, self.stick_until)
+        hand = (self.button, self.button_until, self.grip_height, self.aimed)
+        return np.concatenate([[*mind, *hand], verdicts, tries])
+
+
+class OperatorPolicy:
+    """Decides, 20 times a second, what the hand does."""
+
+    def __init__(
+        self,
+        canal: CanalSurface,
+        goals: list[Goal],
+        options: OperatorOptions,
+        *,
+        stick_speed: float,
+        p_BG: np.ndarray,
+        seed: int,
+    ) -> None:
+        """A person who loads by `canal`; `stick_speed` [m/s] is what full stick moves, `p_BG` (n, 3) the goals in B."""
+        self.canal = canal
+        self.goals = goals
+        self.options = options
+        self.stick_speed = stick_speed
+        self.p_BG = p_BG
+        self.seed = seed
+
+    def initial(self) -> np.ndarray:
+        """State vector before anything has happened."""
+        n = len(self.goals)
+        return OperatorState().pack(np.zeros(n), np.zeros(n))
+
+    def joystick(self, vector: np.ndarray, time: float) -> np.ndarray:
+        """What the hand does now. Shape (6,)."""
+        state, _, _ = OperatorState.unpack(vector, len(self.goals))
+        joystick = np.zeros(JOYSTICK_SIZE)
+        if time < state.stick_until - EPSILON:
+            joystick[:2] = state.stick_x, state.stick_y
+        if state.button and time < state.button_until - EPSILON:
+            joystick[int(state.button)] = 1.0
+        return joystick
+
+    def decide(self, vector: np.ndarray, sight: Sight, time: float) -> np.ndarray:
+        """The state after a look at `sight`. One look, at most one push or press."""
+        state, verdicts, tries = OperatorState.unpack(vector, len(self.goals))
+        if time < state.busy_until - EPSILON:
+            return vector
+        {
+            Mode.BEGIN: self._begin,
+            Mode.PICK: self._pick,
+            Mode.LIFT: self._lift,
+            Mode.CARRY: self._carry,
+            Mode.LEAVE: self._leave,
+            Mode.PUSH: self._push,
+            Mode.RETREAT: self._retreat,
+            Mode.FINISH: self._finish,
+        }[Mode(int(state.mode))](state, verdicts, tries, sight, time)
+        return state.pack(verdicts, tries)
+
+    # ---- what to do in each mode: each changes the state in place ----
+
+    def _begin(self, state: OperatorState, verdicts: np.ndarray, tries: np.ndarray, sight: Sight, time: float) -> None:
+        self._press(state, Button.START, time)
+        state.mode = Mode.PICK
+
+    def _pick(self, state: OperatorState, verdicts: np.ndarray, tries: np.ndarray, sight: Sight, time: float) -> None:
+        nav = sight.navigation
+        if state.thing < 0:
+            self._choose(state, verdicts, tries, sight)
+        if state.thing < 0:
+            state.mode = Mode.FINISH
+            return
+        leg = Leg(int(nav.leg))
+        if leg is Leg.PLACE_TO_HOME:
+            return
+        if leg is not Leg.HOME_TO_PICK:
+            self._press(state, Button.REVERSE, time)
+            return
+        if nav.gripper_closed:
+            self._press(state, Button.GRIPPER, time)
+            return
+        thing = int(state.thing)
+        if self._aim(state, sight, sight.positions[thing], end=0.0, time=time) and nav.waiting:
+            self._press(state, Button.GRIPPER, time)
+            state.grip_height = float(sight.p_BT[2])
+            state.mode = Mode.LIFT
+
+    def _choose(self, state: OperatorState, verdicts: np.ndarray, tries: np.ndarray, sight: Sight) -> None:
+        """The topmost thing that is still to do and lies where the canal's pick disk reaches."""
+        canal = self.canal
+        best, state.thing, state.aimed = -math.inf, -1.0, 0.0
+        for i, verdict in enumerate(verdicts):
+            if verdict != Verdict.TO_DO:
+                continue
+            if sight.placed[i]:
+                verdicts[i] = Verdict.DONE
+                continue
+            offset = sight.positions[i] - canal.center(0.0)
+            across = math.hypot(offset[0], offset[1])
+            if tries[i] >= self.options.tries or across > 2 * canal.radius(0.0) + 0.1 or offset[2] < -0.15:
+                verdicts[i] = Verdict.GIVEN_UP
+                continue
+            # One that was tried in vain comes last: something else may lie on it.
+            score = sight.positions[i][2] - 0.1 * across - tries[i]
+            if score > best:
+                best, state.thing = score, float(i)
+
+    def _lift(self, state: OperatorState, verdicts: np.ndarray, tries: np.ndarray, sight: Sight, time: float) -> None:
+        risen = sight.p_BT[2] - state.grip_height > self.options.lift_m
+        if not (risen or phase(self.canal, sight.navigation.disk) > -self.options.aim_from):
+            return
+        thing = int(state.thing)
+        if np.linalg.norm(sight.positions[thing] - sight.p_BT) < self.options.lost_m:
+            state.mode, state.aimed = Mode.CARRY, 0.0
+        else:
+            self._try_again(state, tries)
+
+    def _carry(self, state: OperatorState, verdicts: np.ndarray, tries: np.ndarray, sight: Sight, time: float) -> None:
+        nav, thing = sight.navigation, int(state.thing)
+        held = sight.positions[thing] - sight.p_BT
+        if np.linalg.norm(held) > 1.5 * self.options.lost_m:
+            self._try_again(state, tries)
+            return
+        if Leg(int(nav.leg)) is not Leg.HOME_TO_PLACE:
+            return
+        goal = self.goals[thing]
+        # What must come to the mark is the thing, which may sit off the middle of the gripper.
+        if goal.precise:
+            aimed = self._aim(state, sight, self.p_BG[thing] - held, end=self.canal.n_disks - 1.0, time=time)
+        else:
+            aimed = True
+        if aimed and nav.waiting:
+            self._press(state, Button.GRIPPER, time)
+            state.mode = Mode.LEAVE
+
+    def _leave(self, state: OperatorState, verdicts: np.ndarray, tries: np.ndarray, sight: Sight, time: float) -> None:
+        thing, d = int(state.thing), phase(self.canal, sight.navigation.disk)
+        if d > self.options.judge_at:
+            return
+        if sight.placed[thing]:
+            verdicts[thing] = Verdict.DONE
+            state.thing, state.mode = -1.0, Mode.PICK
+            return
+        tries[thing] += 1
+        near = np.linalg.norm(sight.positions[thing] - self.canal.center(self.canal.n_disks - 1.0)) < NEAR_GOAL
+        if near and not self.goals[thing].precise and tries[thing] <= self.options.tries:
+            state.mode, state.aimed = Mode.PUSH, 0.0
+        else:
+            state.thing, state.mode = -1.0, Mode.PICK
+
+    def _push(self, state: OperatorState, verdicts: np.ndarray, tries: np.ndarray, sight: Sight, time: float) -> None:
+        """Push in what hangs out: a closed gripper, and back along the same disks (paper VI, task 2)."""
+        nav = sight.navigation
+        if not nav.gripper_closed:
+            self._press(state, Button.GRIPPER, time)
+        elif Leg(int(nav.leg)) is Leg.PLACE_TO_HOME:
+            self._press(state, Button.REVERSE, time)
+        elif self._aim(state, sight, sight.positions[int(state.thing)], self.canal.n_disks - 1.0, time) and nav.waiting:
+            self._press(state, Button.REVERSE, time)
+            state.mode = Mode.RETREAT
+
+    def _retreat(
+        self, state: OperatorState, verdicts: np.ndarray, tries: np.ndarray, sight: Sight, time: float
+    ) -> None:
+        if phase(self.canal, sight.navigation.disk) > self.options.judge_at:
+            return
+        if sight.navigation.gripper_closed:
+            self._press(state, Button.GRIPPER, time)
+        state.mode = Mode.LEAVE
+
+    def _finish(self, state: OperatorState, verdicts: np.ndarray, tries: np.ndarray, sight: Sight, time: float) -> None:
+        nav = sight.navigation
+        if nav.running and Leg(int(nav.leg)) in (Leg.HOME_TO_PICK, Leg.HOME_TO_PLACE):
+            self._press(state, Button.STOP, time)
+
+    # ---- the hand ----
+
+    def _try_again(self, state: OperatorState, tries: np.ndarray) -> None:
+        tries[int(state.thing)] += 1
+        state.thing, state.mode, state.aimed = -1.0, Mode.PICK, 0.0
+
+    def _press(self, state: OperatorState, button: Button, time: float) -> None:
+        state.button, state.button_until = float(button), time + self.options.press_s
+        state.busy_until = time + self.options.think_s + self.options.delay_s
+
+    def _aim(self, state: OperatorState, sight: Sight, target: np.ndarray, end: float, time: float) -> bool:
+        """Push the stick where the drawn path would miss `target` (B, m) at disk `end`; whether all is well.
+
+        The path ahead keeps (η, φ), so what is wanted on the disk at hand is the point with the (η, φ) that the
+        target has on the last disk.
+        """
+        nav, options, canal = sight.navigation, self.options, self.canal
+        d = abs(phase(canal, nav.disk))
+        if d < options.aim_from:
+            return False
+        eta, phi = canal.disk_coordinates(end, target)
+        eta = min(eta, 1.0)
+        miss = canal.point(end, eta, phi) - canal.point(end, nav.eta, nav.phi)
+        among = d > options.aim_until or state.aimed > 0
+        if np.linalg.norm(miss) < (options.end_tolerance_m if among else options.aim_tolerance_m):
+            state.aimed = 1.0
+            return True
+        step = canal.point(nav.disk, eta, phi) - canal.point(nav.disk, nav.eta, nav.phi)
+        x, y = canal.axes(nav.disk)
+        self._push_stick(state, float(step @ x), float(step @ y), time)
+        return False
+
+    def _push_stick(self, state: OperatorState, right: float, up: float, time: float) -> None:
+        """One ballistic push that would move the point by (right, up) metres, as well as a hand can."""
+        length = math.hypot(right, up)
+        if length < 1e-4:
+            return
+        samples = math.ceil(length / (self.stick_speed * PERIOD))
+        k = length / (self.stick_speed * PERIOD * samples)
+        error = np.random.default_rng((self.seed, HAND, round(time / PERIOD))).normal(0, self.options.hand_noise, 2)
+        k = min(max(k * (1 + error[0]), 0.15), 1.0)
+        angle = math.atan2(up, right) + error[1]
+        state.stick_x, state.stick_y = k * math.cos(angle), k * math.sin(angle)
+        state.stick_until = time + samples * PERIOD
+        state.busy_until = state.stick_until + self.options.delay_s + self.options.look_s
+
+
+EPSILON = 1e-6
+"""[s] Slack in comparing sample times."""
+NEAR_GOAL = 0.35
+"""[m] A thing this near the end of the canal hangs at the door; further off it fell elsewhere."""
+HAND, EYE = 1, 2
+"""Streams of random numbers: errors of the hand, errors of the eye."""
