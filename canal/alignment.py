@@ -1,0 +1,136 @@
+"""Alignment of demonstrations by dynamic time warping on position (paper V-A, step 2)."""
+
+from __future__ import annotations
+
+from functools import cache
+
+import numpy as np
+from scipy.ndimage import gaussian_filter1d
+from scipy.spatial.distance import cdist
+
+from canal.errors import InputError
+from canal.trimming import Motion
+
+BAND = 0.15  # share of the length that the warping may run ahead or behind (Sakoe-Chiba)
+WARP_SMOOTHING = 0.03  # share of the length, σ of the smoothing of the warps
+ROUNDS = 3  # against the running mean, for three demonstrations and more
+# Squared distances are rounded to this, [m²] (4 µm at zero): sums of them are then exact, so that a tie is a
+# tie however the data are turned, and the warping path the same.
+_QUANTUM = 2.0**-36
+
+
+def align(motions: list[Motion], band: float = BAND, smoothing: float = WARP_SMOOTHING) -> np.ndarray:
+    """Find where along each demonstration the common parameter is.
+
+    For two demonstrations this is the symmetric warping path, τ = (i + j)/2; for more, each is warped against
+    their running mean for a few rounds, and τ is the mean of their warps, so that none of them leads.
+
+    Args:
+        motions: n demonstrations of M points each, uniform in moved length, in canonical order.
+        band: of the warping, as a share of M.
+        smoothing: σ of the smoothing of the warps, as a share of M.
+
+    Returns:
+        Warps: positions in [0, M - 1] along each demonstration, at M values of τ uniform in [0, 1]. Shape
+        (n, M); each row increases from 0 to M - 1, and their mean is the identity.
+
+    Raises:
+        InputError: a demonstration runs in the opposite direction.
+    """
+    _refuse_opposite(motions)
+    curves = np.stack([motion.position for motion in motions])
+    n, m, _ = curves.shape
+    identity = np.arange(m, dtype=float)
+    if n == 2:
+        path = np.array(_warping_path(curves[0], curves[1], band), dtype=float)
+        return _centred(_smoothed(_along(path, path.mean(axis=1), m), smoothing * m))
+    warps = np.tile(identity, (n, 1))
+    for _ in range(ROUNDS):
+        mean = np.mean([sample(curve, warp) for curve, warp in zip(curves, warps, strict=True)], axis=0)
+        found = []
+        for curve in curves:
+            path = np.array(_warping_path(mean, curve, band), dtype=float)
+            found.append(_along(path, path[:, 0], m)[1])
+        warps = _centred(_smoothed(np.stack(found), smoothing * m))
+    return warps
+
+
+def sample(values: np.ndarray, at: np.ndarray) -> np.ndarray:
+    """Values between the samples, linearly. `values` (M, k), `at` in [0, M - 1]; shape (len(at), k)."""
+    grid = np.arange(len(values), dtype=float)
+    return np.column_stack([np.interp(at, grid, column) for column in values.T])
+
+
+@cache
+def _tslearn_path():
+    """tslearn's `dtw_path_from_metric`, its just-in-time compilation off.
+
+    On a few hundred points compiling costs 5 s and running 30 ms; the result is bitwise the same.
+    """
+    import numba
+
+    before = numba.config.DISABLE_JIT
+    numba.config.DISABLE_JIT = True
+    try:
+        from tslearn.metrics import dtw_path_from_metric
+    finally:
+        numba.config.DISABLE_JIT = before
+    return dtw_path_from_metric
+
+
+def _warping_path(a: np.ndarray, b: np.ndarray, band: float) -> list[tuple[int, int]]:
+    """The path of pairs (i, j) from (0, 0) to (M - 1, M - 1) of least summed squared distance."""
+    squared = np.round(cdist(a, b, "sqeuclidean") / _QUANTUM) * _QUANTUM
+    path, _ = _tslearn_path()(
+        squared,
+        metric="precomputed",
+        global_constraint="sakoe_chiba",
+        sakoe_chiba_radius=max(1, round(band * len(a))),
+    )
+    return path
+
+
+def _along(path: np.ndarray, tau: np.ndarray, m: int) -> np.ndarray:
+    """Both columns of a warping path as functions of `tau`, at 0..m-1. Shape (2, m).
+
+    Where τ stands still on the path the mean of what is paired with it is taken.
+    """
+    values, first, count = np.unique(tau, return_index=True, return_counts=True)
+    sums = np.add.reduceat(path, first, axis=0) / count[:, None]
+    sums[0], sums[-1] = path[0], path[-1]
+    return np.stack([np.interp(np.arange(m, dtype=float), values, column) for column in sums.T])
+
+
+def _smoothed(warps: np.ndarray, sigma: float) -> np.ndarray:
+    """Warps smoothed along τ with their ends kept (point reflection); they stay increasing. Shape (n, m)."""
+    m = warps.shape[1]
+    pad = min(m - 1, int(np.ceil(4 * sigma)))
+    ahead = warps - np.arange(m)
+    padded = np.concatenate([-ahead[:, pad:0:-1], ahead, -ahead[:, -2 : -pad - 2 : -1]], axis=1)
+    smooth = gaussian_filter1d(padded, sigma, axis=1, mode="nearest")[:, pad : pad + m] + np.arange(m)
+    smooth = np.clip(np.maximum.accumulate(smooth, axis=1), 0.0, m - 1.0)
+    smooth[:, 0], smooth[:, -1] = 0.0, m - 1.0
+    return smooth
+
+
+def _centred(warps: np.ndarray) -> np.ndarray:
+    """Warps over their own mean, so that no demonstration leads. Shape (n, m)."""
+    m = warps.shape[1]
+    mean = np.mean(warps, axis=0)
+    mean = (mean + 1e-6 * np.arange(m)) * ((m - 1) / (m - 1 + 1e-6 * (m - 1)))  # strictly increasing
+    return np.stack([np.interp(np.arange(m, dtype=float), mean, warp) for warp in warps])
+
+
+def _refuse_opposite(motions: list[Motion]) -> None:
+    first = motions[0]
+    for other in motions[1:]:
+        along = np.mean(np.sum((first.position - other.position) ** 2, axis=1))
+        against = np.mean(np.sum((first.position - other.position[::-1]) ** 2, axis=1))
+        ends_along = np.sum((first.position[[0, -1]] - other.position[[0, -1]]) ** 2)
+        ends_against = np.sum((first.position[[0, -1]] - other.position[[-1, 0]]) ** 2)
+        if against < 0.5 * along and ends_against <= ends_along + 1e-12:
+            raise InputError(
+                f"{other.name} runs in the opposite direction to {first.name} (mean distance "
+                f"{1e3 * np.sqrt(along):.0f} mm, {1e3 * np.sqrt(against):.0f} mm when reversed); record both from "
+                "pick to place"
+            )

@@ -1,0 +1,265 @@
+"""From demonstrations to a canal surface (paper V-A, IV-A, IV-B and V-B)."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from canal import orientation as orient
+from canal.alignment import BAND, WARP_SMOOTHING, align, sample
+from canal.demonstration import Demonstration
+from canal.errors import InputError
+from canal.frames import correction_frames, perpendicular
+from canal.refinement import SupportPlane, dips, hold_at_planes
+from canal.relaxation import MAX_TILT, continuous_directions, crossings, relax_normals, tilts
+from canal.splines import arc_length, fit_spline, knots_every, rotation_curve, uniform_in_arc
+from canal.surface import CanalSurface
+from canal.trimming import trim
+
+DISK_SPACING_M = 0.005
+FEWEST_DISKS, MOST_DISKS = 200, 1000
+N_POINTS = 201  # M, points of a demonstration during alignment
+MAX_X_TURN = math.radians(6.0)  # of x about n between neighbours: a thumb follows 6° in 5 mm
+
+
+@dataclass(frozen=True)
+class LearningOptions:
+    """How a canal is learned. The defaults are what was measured to work on recorded and hard synthetic data.
+
+    Attributes:
+        step: h, distance of knots as a share of the whole (paper: the step of the filter).
+        interpolate: splines through every h-th sample, as in the paper, instead of least squares.
+        band: how far the alignment may run ahead or behind, as a share of the whole.
+        warp_smoothing: σ of the smoothing of the alignment, as a share of the whole.
+        margin: added to every radius, [m].
+        contain_raw: widen radii until every recorded sample lies in a ball, not only every aligned point.
+        ellipse: elliptic cross-sections where three or more demonstrations allow it.
+        n_disks: odd number of disks; None for one every 5 mm, 200 to 1000 of them.
+        x_global: x_G, the direction that corrections along x follow, in B.
+        y_window: number of previous disks whose mean y decides on the sign of the next (paper: 10).
+        support_planes: tables, walls and doors.
+        alpha, beta: of the orientation weight.
+    """
+
+    step: float = 0.1
+    interpolate: bool = False
+    band: float = BAND
+    warp_smoothing: float = WARP_SMOOTHING
+    margin: float = 0.0
+    contain_raw: bool = False
+    ellipse: bool = False
+    n_disks: int | None = None
+    x_global: tuple[float, float, float] = (1.0, 0.0, 0.0)
+    y_window: int = 1
+    support_planes: tuple[SupportPlane, ...] = ()
+    alpha: float = orient.ALPHA
+    beta: float = orient.BETA
+
+    def __post_init__(self):
+        for name, low, high in (("step", 0.005, 0.5), ("band", 0.01, 1.0), ("warp_smoothing", 0.0, 0.5)):
+            if not low <= getattr(self, name) <= high:
+                raise InputError(f"{name} is {getattr(self, name):g}; it must lie in [{low:g}, {high:g}]")
+        if not (math.isfinite(self.margin) and 0 <= self.margin <= 1):
+            raise InputError(f"margin is {self.margin:g} m; it must lie in [0, 1]")
+        if self.n_disks is not None and (self.n_disks < 3 or self.n_disks % 2 == 0):
+            raise InputError(f"n_disks is {self.n_disks}; it must be odd and at least 3, so that home is a disk")
+        if self.y_window < 1:
+            raise InputError(f"y_window is {self.y_window}; it must be at least 1")
+        size = np.linalg.norm(self.x_global)
+        if not (math.isfinite(size) and size > 1e-9):
+            raise InputError(f"x_global is {self.x_global}; give a finite direction, not zero")
+
+
+def learn_canal(
+    demonstrations: Sequence[Demonstration],
+    options: LearningOptions = LearningOptions(),  # noqa: B008 (frozen)
+    progress: Callable[[str], None] = lambda stage: None,
+) -> CanalSurface:
+    """Learn a canal surface from two or more demonstrations, in any order.
+
+    Args:
+        demonstrations: all in one frame, all from pick to place.
+        options: how.
+        progress: called with a word at each stage.
+
+    Returns:
+        The canal; what a person should know is in its `warnings`.
+
+    Raises:
+        InputError: fewer than two, one without motion, opposite directions, a centre beyond a support plane.
+    """
+    if len(demonstrations) < 2:
+        raise InputError(f"{len(demonstrations)} demonstration(s); a canal needs at least two, of the same task")
+    progress("trimming")
+    motions = [(trim(d, N_POINTS), d) for d in demonstrations]
+    # A canonical order that a rigid motion of all the data does not change; the bytes decide on equal lengths.
+    motions.sort(key=lambda m: (len(m[1]), round(m[0].length, 9), m[1].position.tobytes(), m[1].orientation.tobytes()))
+    progress("aligning")
+    warps = align([motion for motion, _ in motions], options.band, options.warp_smoothing)
+
+    progress("fitting")
+    knots = knots_every(options.step)
+    curves = []
+    for (motion, _), warp in zip(motions, warps, strict=True):
+        curves.append(fit_spline(knots, sample(motion.position, warp), options.interpolate))
+    mean = fit_spline(knots, np.mean([curve(knots) for curve in curves], axis=0), interpolate=True)
+    u_arc = arc_length(mean)
+    length = u_arc[1][-1]
+    if length < 1e-4:
+        raise InputError(
+            f"the mean of the demonstrations is {1e3 * length:.2f} mm long: they cancel each other; show the same "
+            "motion in each"
+        )
+    at = uniform_in_arc(mean, options.n_disks or disk_count(length), u_arc)
+    positions = np.stack([curve(at) for curve in curves])
+    quaternions = []
+    for (motion, _), warp in zip(motions, warps, strict=True):
+        turned = sample(motion.orientation, warp[np.round(knots * (N_POINTS - 1)).astype(int)])
+        quaternions.append(rotation_curve(knots, turned / np.linalg.norm(turned, axis=1, keepdims=True), at))
+
+    progress("disks and frames")
+    return build_surface(
+        positions,
+        np.stack(quaternions),
+        tangents=unit_tangents(mean(at, 1)),
+        moving_time_s=float(np.mean([motion.moving_time for motion, _ in motions])),
+        options=options,
+        raw=[d.position for _, d in motions] if options.contain_raw else None,
+    )
+
+
+def disk_count(length: float) -> int:
+    """N_f for a directrix of this length [m]: one every 5 mm, 200 to 1000, made odd."""
+    return min(max(math.ceil(length / DISK_SPACING_M), FEWEST_DISKS), MOST_DISKS) // 2 * 2 + 1
+
+
+def unit_tangents(derivatives: np.ndarray) -> np.ndarray:
+    """Unit vectors along derivatives of a curve; one that vanishes takes its predecessor's. Shape (N, 3)."""
+    size = np.linalg.norm(derivatives, axis=1)
+    known = size > 1e-9 * size.max()
+    nearest = np.maximum.accumulate(np.where(known, np.arange(len(size)), int(np.argmax(known))))
+    return derivatives[nearest] / size[nearest, None]
+
+
+def build_surface(
+    positions: np.ndarray,
+    quaternions: np.ndarray,
+    *,
+    tangents: np.ndarray,
+    moving_time_s: float,
+    options: LearningOptions = LearningOptions(),  # noqa: B008 (frozen)
+    raw: list[np.ndarray] | None = None,
+) -> CanalSurface:
+    """The canal around demonstrations that are aligned disk by disk (paper IV-A, IV-B, V-B).
+
+    Args:
+        positions: [m]. Shape (n, N, 3).
+        quaternions: unit, (w, x, y, z). Shape (n, N, 4).
+        tangents: e_T of the mean curve at each disk. Shape (N, 3).
+        moving_time_s: mean time spent moving, [s].
+        options: margin, planes, frames, weights.
+        raw: further points that must lie in the balls, each (., 3), [m].
+
+    Raises:
+        InputError: a centre lies beyond a support plane.
+    """
+    centres = positions.mean(axis=0)
+    radii = np.linalg.norm(positions - centres, axis=2).max(axis=0)
+    if raw is not None:
+        radii = _containing(centres, radii, np.concatenate(raw))
+    radii = radii + options.margin
+    quaternions = orient.agree_in_sign(quaternions)
+    mean = orient.mean_orientation(quaternions)
+    spread = orient.orientation_spread(quaternions, mean)
+
+    normals = relax_normals(centres, tangents, radii)
+    held: dict[int, np.ndarray] = {}
+    while options.support_planes:
+        more = hold_at_planes(centres, tangents, normals, radii, options.support_planes)
+        if set(more) <= set(held):
+            break
+        held.update({s: m for s, m in more.items() if s not in held})
+        normals = relax_normals(centres, tangents, radii, held)
+
+    x_global = np.asarray(options.x_global, dtype=float)
+    x_global = x_global / np.linalg.norm(x_global)
+    x_axes, y_axes = correction_frames(
+        centres,
+        normals,
+        radii,
+        x_global,
+        start=_tool_axis_across(mean[0], normals[0]),
+        y_window=options.y_window,
+        max_turn=MAX_X_TURN,
+    )
+    return CanalSurface(
+        directrix=centres,
+        radii=radii,
+        tangents=tangents,
+        normals=normals,
+        x_axes=x_axes,
+        y_axes=y_axes,
+        orientations=mean,
+        orientation_sd=spread,
+        orientation_weights=orient.orientation_weight(spread, options.alpha, options.beta),
+        demonstrations=positions,
+        demonstration_orientations=quaternions,
+        moving_time_s=moving_time_s,
+        support_planes=options.support_planes,
+        x_global=x_global,
+        warnings=_warnings(centres, tangents, normals, radii, options.support_planes),
+    )
+
+
+def _containing(centres: np.ndarray, radii: np.ndarray, points: np.ndarray) -> np.ndarray:
+    """Radii widened until each point lies in the ball of the disk nearest to it."""
+    from scipy.spatial import KDTree
+
+    distance, nearest = KDTree(centres).query(points)
+    radii = radii.copy()
+    np.maximum.at(radii, nearest, distance)
+    return radii
+
+
+def _tool_axis_across(quaternion: np.ndarray, normal: np.ndarray) -> np.ndarray:
+    """The tool's own axis that lies most across a direction. Shape (3,)."""
+    w, x, y, z = quaternion
+    axes = np.array(
+        [
+            [1 - 2 * (y * y + z * z), 2 * (x * y + w * z), 2 * (x * z - w * y)],
+            [2 * (x * y - w * z), 1 - 2 * (x * x + z * z), 2 * (y * z + w * x)],
+            [2 * (x * z + w * y), 2 * (y * z - w * x), 1 - 2 * (x * x + y * y)],
+        ]
+    )
+    along = np.abs(axes @ normal)
+    return axes[int(np.argmin(along))] if along.min() < 0.9 else perpendicular(normal)
+
+
+def _warnings(centres, tangents, normals, radii, planes) -> tuple[str, ...]:
+    lines = []
+    last = len(centres) - 1
+    bad = np.flatnonzero(crossings(centres, normals, radii) >= 1.0)
+    if bad.size:
+        lines.append(
+            f"neighbouring disks cross at {bad.size} places, first at disk {bad[0]}, last at {bad[-1]} of {last}: a "
+            f"hairpin tighter than the radius ({1e3 * radii[bad].max():.0f} mm)"
+        )
+    tilt = tilts(normals, tangents)
+    if tilt.max() > MAX_TILT:
+        s = int(np.argmax(tilt))
+        lines.append(f"disk {s} of {last} is tilted by {np.degrees(tilt[s]):.0f}° against the path")
+    turned = np.sum(continuous_directions(tangents)[1:] * tangents[1:], axis=1) < 0
+    if turned.any():
+        lines.append(f"the path reverses at disk {int(np.argmax(turned)) + 1} of {last}")
+    for plane in planes:
+        deep = dips(centres, normals, radii, plane)
+        if deep.max() > 1e-9:
+            s = int(np.argmax(deep))
+            lines.append(
+                f"disk {s} of {last} runs alongside the plane {plane.normal}, {plane.offset:g} and would reach "
+                f"{1e3 * deep[s]:.0f} mm beyond it: points are clipped there"
+            )
+    return tuple(lines)

@@ -1,0 +1,94 @@
+"""Normals of the disks: the tangents, relaxed until neighbouring disks do not cross inside the canal."""
+
+from __future__ import annotations
+
+import numpy as np
+from scipy.linalg import solveh_banded
+
+ROOM = 0.9  # share of the gap between neighbours that a tilt may use up
+MAX_TILT = np.radians(30.0)  # [rad] beyond this a disk is no cross-section any more
+_TARGET = 0.85  # aimed at, so that rounding does not cross ROOM
+_STIFFEN = 2.0
+_MAX_ROUNDS = 60
+_HELD = 1e7  # weight of a disk that is held, against 1 for one that follows its tangent
+
+
+def crossings(points: np.ndarray, normals: np.ndarray, radii: np.ndarray) -> np.ndarray:
+    """How much of the gap between neighbours their mutual tilt uses up: they cross from 1 on.
+
+    r |n_s × n_{s+1}| / |Δc · n| with the larger of the two radii and the smaller of the two gaps. Shape (N-1,).
+    """
+    reach = np.maximum(radii[1:], radii[:-1]) * np.linalg.norm(np.cross(normals[1:], normals[:-1]), axis=1)
+    delta = np.diff(points, axis=0)
+    gap = np.minimum(
+        np.abs(np.sum(delta * normals[1:], axis=1)),
+        np.abs(np.sum(delta * normals[:-1], axis=1)),
+    )
+    return np.where(reach <= 1e-12, 0.0, reach / np.maximum(gap, 1e-15))
+
+
+def continuous_directions(vectors: np.ndarray) -> np.ndarray:
+    """Vectors with the sign that makes n_s · n_{s-1} > 0: disks retrace their way at a reversal. Shape (N, 3)."""
+    turns = np.sum(vectors[1:] * vectors[:-1], axis=1) < 0
+    sign = np.where(np.cumsum(turns) % 2 == 1, -1.0, 1.0)
+    return np.concatenate([vectors[:1], vectors[1:] * sign[:, None]])
+
+
+def relax_normals(
+    points: np.ndarray,
+    tangents: np.ndarray,
+    radii: np.ndarray,
+    held: dict[int, np.ndarray] | None = None,
+) -> np.ndarray:
+    """Tilt disks as little and as locally as it takes for neighbours not to cross.
+
+    Minimises Σ |n_s - e_T(s)|² + Σ k_s |n_{s+1} - n_s|², where k_s starts at zero and is raised only where
+    neighbours still cross. Centres and radii stay as they are.
+
+    Args:
+        points: centres, [m]. Shape (N, 3).
+        tangents: unit. Shape (N, 3).
+        radii: [m]. Shape (N,).
+        held: disks whose normal is given (at a support plane), by index.
+
+    Returns:
+        Unit normals, sign-continuous. Shape (N, 3). Neighbours that still cross lie in a hairpin tighter
+        than the radius, which no tilt cures; see `crossings`.
+    """
+    wanted = continuous_directions(tangents)
+    weight = np.ones(len(wanted))
+    for s, normal in (held or {}).items():
+        weight[s] = _HELD
+        wanted[s] = normal if normal @ wanted[s] >= 0 else -normal
+    normals = wanted
+    stiffness = np.zeros(len(wanted) - 1)
+    best, least = normals, np.inf
+    for _ in range(_MAX_ROUNDS):
+        share = crossings(points, normals, radii)
+        excess = float(np.sum(np.maximum(share - ROOM, 0.0)))
+        if excess < least:
+            best, least = normals, excess
+        bad = share > (_TARGET if excess > 0 else ROOM)
+        if not bad.any():
+            break
+        # Stiffening the neighbours too spreads a bend instead of pushing it to the next link.
+        near = bad.copy()
+        near[1:] |= bad[:-1]
+        near[:-1] |= bad[1:]
+        stiffness = np.where(near, np.maximum(_STIFFEN * stiffness, 0.5), stiffness)
+        stiffness = np.minimum(stiffness, 1e6)
+        banded = np.zeros((2, len(wanted)))
+        banded[1] = weight
+        banded[1, :-1] += stiffness
+        banded[1, 1:] += stiffness
+        banded[0, 1:] = -stiffness
+        relaxed = solveh_banded(banded, weight[:, None] * wanted)
+        size = np.linalg.norm(relaxed, axis=1, keepdims=True)
+        normals = np.where(size > 1e-9, relaxed / np.maximum(size, 1e-9), wanted)
+    return best
+
+
+def tilts(normals: np.ndarray, tangents: np.ndarray) -> np.ndarray:
+    """Angle between each disk's normal and the tangent, up to sign, [rad]. Shape (N,)."""
+    cross = np.linalg.norm(np.cross(normals, tangents), axis=1)
+    return np.arctan2(cross, np.abs(np.sum(normals * tangents, axis=1)))

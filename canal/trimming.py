@@ -1,0 +1,103 @@
+"""Soft trimming: a demonstration as a function of how far it has moved, pauses left out (paper V-A, step 1)."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.ndimage import gaussian_filter1d
+
+from canal.demonstration import SAMPLE_RATE_HZ, Demonstration
+from canal.errors import InputError
+
+SMOOTHING_SAMPLES = 4.0  # [samples at 20 Hz] σ of the smoothing in time
+ROTATION_LENGTH_M = 0.07  # [m / rad] λ: how much motion a turn on the spot is
+SPEED_SHARE = 0.25  # v₀ = 0.25 Σv²/Σv: half of the weight is lost at a quarter of the usual speed
+SMALLEST_MOTION_M = 0.005  # [m] a tremor reaches 5 mm; what moves less has no direction
+
+
+@dataclass(frozen=True, eq=False)
+class Motion:
+    """A demonstration resampled uniformly in ℓ, the moved length.
+
+    Attributes:
+        position: [m]. Shape (M, 3).
+        orientation: unit quaternions, sign-continuous. Shape (M, 4).
+        moving_time: time spent moving, Σ w dt, [s].
+        length: ℓ of the whole, [m], turns included.
+        name: of the demonstration.
+    """
+
+    position: np.ndarray
+    orientation: np.ndarray
+    moving_time: float
+    length: float
+    name: str
+
+
+def trim(demonstration: Demonstration, n_points: int) -> Motion:
+    """Leave out, softly, what does not move, and resample uniformly in what does.
+
+    With v the speed (rotation counted as λ times its rate), dℓ = v w dt, w = (v/v₀)² / (1 + (v/v₀)²). A
+    threshold instead of w is discontinuous in the data.
+
+    Args:
+        demonstration: as recorded.
+        n_points: M, how many points to return.
+
+    Raises:
+        InputError: it does not move.
+    """
+    n = len(demonstration)
+    extent = np.ptp(demonstration.position, axis=0).max()
+    if extent < SMALLEST_MOTION_M:
+        raise InputError(
+            f"{demonstration.name}: no motion, it stays within {1e3 * extent:.1f} mm (at least "
+            f"{1e3 * SMALLEST_MOTION_M:.0f} mm); record it again"
+        )
+    dt = demonstration.duration / (n - 1)
+    clock = np.linspace(demonstration.time[0], demonstration.time[-1], n)
+    # A fast recording is smoothed as long as a slow one; a short one never over more than its own features.
+    sigma = min(max(SMOOTHING_SAMPLES, SMOOTHING_SAMPLES / (SAMPLE_RATE_HZ * dt)), n / 50.0)
+    position = _smooth(_at(clock, demonstration.time, demonstration.position), sigma)
+    turned = _smooth(_at(clock, demonstration.time, continuous_signs(demonstration.orientation)), sigma)
+    orientation = continuous_signs(turned / np.linalg.norm(turned, axis=1, keepdims=True))
+    moved = np.linalg.norm(np.diff(position, axis=0), axis=1)
+    half_chord = 0.5 * np.linalg.norm(np.diff(orientation, axis=0), axis=1)
+    step = np.hypot(moved, ROTATION_LENGTH_M * 4.0 * np.arcsin(np.minimum(half_chord, 1.0)))
+    usual = SPEED_SHARE * np.sum(step**2) / np.sum(step)
+    weight = (step / usual) ** 2 / (1.0 + (step / usual) ** 2)
+    length = np.concatenate([[0.0], np.cumsum(step * weight)])
+    # The least slope keeps ℓ invertible where nothing moves at all.
+    length += np.arange(n) * (1e-9 * length[-1] / n)
+    at = np.interp(np.linspace(0.0, length[-1], n_points), length, np.arange(n, dtype=float))
+    turned = _at(at, np.arange(n, dtype=float), orientation)
+    return Motion(
+        position=_at(at, np.arange(n, dtype=float), position),
+        orientation=turned / np.linalg.norm(turned, axis=1, keepdims=True),
+        moving_time=float(np.sum(weight) * dt),
+        length=float(length[-1]),
+        name=demonstration.name,
+    )
+
+
+def continuous_signs(orientation: np.ndarray) -> np.ndarray:
+    """The same rotations with q_i · q_{i-1} ≥ 0 along the first axis. Shape (N, 4)."""
+    turns = np.sum(orientation[1:] * orientation[:-1], axis=1) < 0
+    sign = np.where(np.cumsum(turns) % 2 == 1, -1.0, 1.0)
+    return np.concatenate([orientation[:1], orientation[1:] * sign[:, None]])
+
+
+def _at(at: np.ndarray, grid: np.ndarray, values: np.ndarray) -> np.ndarray:
+    """Linear interpolation of each column of `values` (given at `grid`). Shape (len(at), k)."""
+    return np.column_stack([np.interp(at, grid, column) for column in values.T])
+
+
+def _smooth(values: np.ndarray, sigma: float) -> np.ndarray:
+    """Gaussian smoothing that keeps both ends where they are (point reflection). Shape (N, k)."""
+    n = len(values)
+    pad = min(n - 1, int(np.ceil(4 * sigma)))
+    if sigma < 0.1 or pad < 1:
+        return values
+    padded = np.concatenate([2 * values[0] - values[pad:0:-1], values, 2 * values[-1] - values[-2 : -pad - 2 : -1]])
+    return gaussian_filter1d(padded, sigma, axis=0, mode="nearest")[pad : pad + n]
