@@ -75,7 +75,7 @@ class LearningOptions:
 
 def learn_canal(
     demonstrations: Sequence[Demonstration],
-    options: LearningOptions = LearningOptions(),  # noqa: B008 (frozen)
+    options: LearningOptions = LearningOptions(),
     progress: Callable[[str], None] = lambda stage: None,
 ) -> CanalSurface:
     """Learn a canal surface from two or more demonstrations, in any order.
@@ -150,7 +150,7 @@ def build_surface(
     *,
     tangents: np.ndarray,
     moving_time_s: float,
-    options: LearningOptions = LearningOptions(),  # noqa: B008 (frozen)
+    options: LearningOptions = LearningOptions(),
     raw: list[np.ndarray] | None = None,
 ) -> CanalSurface:
     """The canal around demonstrations that are aligned disk by disk (paper IV-A, IV-B, V-B).

@@ -252,7 +252,7 @@ class CanalSurface:
         if sizes["N"] < 3 or sizes["N"] % 2 == 0:
             raise InputError(f"{path}: {sizes['N']} disks; a canal has an odd number of at least 3")
         for key, shape in _SHAPES.items():
-            wanted = tuple(sizes.get(side, side) for side in shape)
+            wanted = tuple(sizes[side] if isinstance(side, str) else side for side in shape)
             if arrays[key].shape != wanted or not np.issubdtype(arrays[key].dtype, np.number):
                 raise InputError(f"{path}: {key} has shape {arrays[key].shape}; it must be {wanted}, numbers")
             if not np.isfinite(arrays[key]).all():
