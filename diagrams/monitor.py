@@ -27,8 +27,6 @@ class MonitorOptions:
     contact with the back of the hand is 280 N, quasi-static 140 N; a care robot stays about the latter."""
     clear_phase: float = 0.5
     """|d| below which the robot has left the goal, so that the run can end."""
-    end_on_stop: bool = True
-    """A stop after a start ends the run (the simulated operator); with a person it is a pause."""
 
     def __post_init__(self) -> None:
         if not self.force_limit_n > 0:
@@ -45,8 +43,11 @@ class Monitor(LeafSystem):
                     X_BT (7) → │         │ → peak_forces (pairs) [N]
            navigation_state  → │         │ → measures (2): measured correction distance [m], peak penetration [m]
      contact_forces (pairs)  → │         │
-            penetration (1)  → └─────────┘
+            penetration (1)  → │         │
+       person_in_charge (1)  → └─────────┘
     ```
+
+    `person_in_charge` is optional: a person's stop is a pause, the simulated operator's ends the run.
     """
 
     def __init__(
@@ -59,7 +60,7 @@ class Monitor(LeafSystem):
         options: MonitorOptions | None = None,
         period: float = 0.01,
     ) -> None:
-        """Judge thing i by `goals[i]`, `contact_pairs` watched pairs of bodies, every `period` seconds; base at `X_WB`."""
+        """Judge thing i by `goals[i]` and watch `contact_pairs` pairs, every `period` seconds; the base is at `X_WB`."""
         super().__init__()
         self._canal, self._goals = canal, goals
         self._options = options or MonitorOptions()
@@ -72,6 +73,7 @@ class Monitor(LeafSystem):
         self._navigation = self.DeclareVectorInputPort("navigation_state", len(FIELD_NAMES))
         self._forces = self.DeclareVectorInputPort("contact_forces", contact_pairs)
         self._penetration = self.DeclareVectorInputPort("penetration", 1)
+        self._person = self.DeclareVectorInputPort("person_in_charge", 1)
         self._placed_times = self.DeclareDiscreteState(np.full(n, -1.0))
         self._peaks = self.DeclareDiscreteState(contact_pairs)
         self._measures = self.DeclareDiscreteState(2)
@@ -128,7 +130,8 @@ class Monitor(LeafSystem):
         clear = abs(phase(self._canal, navigation.disk)) < options.clear_phase
         if n and (times >= 0).all() and clear:
             return EventStatus.ReachedTermination(self, "every thing is in its place")
-        if options.end_on_stop and started and not navigation.running:
+        person = self._person.HasValue(context) and self._person.Eval(context)[0] > 0.5
+        if started and not navigation.running and not person:
             return EventStatus.ReachedTermination(self, f"the operator stopped with {(times >= 0).sum()} of {n} placed")
         return EventStatus.Succeeded()
 

@@ -1,0 +1,83 @@
+"""What a run leaves behind: one array a signal at the control rate, kept by Drake's own log sinks in the Context."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+from pydrake.systems.framework import Context, DiagramBuilder, OutputPort
+from pydrake.systems.primitives import LogVectorOutput, VectorLogSink
+
+from canal.navigation import FIELD_NAMES, Leg
+from diagrams.ik_system import IkStatusField
+from diagrams.joystick import GRIPPER
+
+
+class RunLog:
+    """Log sinks for the signals of a run, and what they come to."""
+
+    def __init__(self, builder: DiagramBuilder, signals: Mapping[str, OutputPort], period: float) -> None:
+        """Log each of `signals` every `period` seconds."""
+        self._sinks: dict[str, VectorLogSink] = {
+            name: LogVectorOutput(port, builder, period) for name, port in signals.items()
+        }
+
+    def signals(self, root: Context) -> dict[str, np.ndarray]:
+        """`time` (T,) and each signal (T, ...), raw."""
+        logs = {name: sink.FindLog(root) for name, sink in self._sinks.items()}
+        first = next(iter(logs.values()))
+        return {"time": first.sample_times().copy()} | {name: log.data().T.copy() for name, log in logs.items()}
+
+
+def named_signals(raw: Mapping[str, np.ndarray]) -> dict[str, np.ndarray]:
+    """The arrays of a log file (DESIGN, "Files that others read") from the raw signals of `RunLog`.
+
+    Wall-clock figures are left out: two runs with one seed give the same file, bit for bit.
+    """
+    navigation = {name: raw["navigation_state"][:, i] for i, name in enumerate(FIELD_NAMES)}
+    joystick, ik = raw["joystick"], raw["ik_status"]
+    n = raw["q"].shape[1]
+    named = {
+        "time": raw["time"],
+        "disk": navigation["disk"],
+        "eta": navigation["eta"],
+        "phi": navigation["phi"],
+        "leg": navigation["leg"].astype(int),
+        "stick": joystick[:, :GRIPPER],
+        "buttons": joystick[:, GRIPPER:],
+        "X_BT_desired": raw["X_BT_desired"],
+        "X_BT": raw["X_BT"],
+        "q_command": raw["desired_state"][:, :n],
+        "q": raw["q"],
+        "gripper": raw["gripper_state"][:, 0],
+        "gripper_command": navigation["gripper_closed"],
+        "correcting": navigation["correcting"],
+        "ik_status": ik[:, IkStatusField.STATUS].astype(int),
+        "orientation_weight": raw["orientation_weight"][:, 0],
+        "item_poses": raw["item_poses"],
+        "contact_forces": raw["contact_forces"],
+    }
+    times, kinds = events(raw)
+    return named | {"event_times": times, "events": kinds}
+
+
+def events(raw: Mapping[str, np.ndarray]) -> tuple[np.ndarray, np.ndarray]:
+    """What happened and when: times [s] (E,) and names (E,) such as `correction`, `close`, `leg pick_to_home`."""
+    time, navigation = raw["time"], raw["navigation_state"]
+    found: list[tuple[float, str]] = []
+
+    def add(field: str, names: Mapping[float, str]) -> None:
+        values = navigation[:, FIELD_NAMES.index(field)]
+        for k in np.flatnonzero(np.diff(values)) + 1:
+            if values[k] in names:
+                found.append((float(time[k]), names[float(values[k])]))
+
+    add("running", {1.0: "start", 0.0: "stop"})
+    add("gripper_closed", {1.0: "close", 0.0: "open"})
+    add("correcting", {1.0: "correction", 0.0: "correction ends"})
+    add("blocked", {1.0: "force limit", 0.0: "freed"})
+    add("leg", {float(leg): f"leg {leg.name.lower()}" for leg in Leg})
+    backtracks = navigation[:, FIELD_NAMES.index("backtracks")]
+    found += [(float(time[k]), "reverse") for k in np.flatnonzero(np.diff(backtracks) > 0) + 1]
+    found.sort()
+    return np.array([t for t, _ in found]), np.array([name for _, name in found], dtype=np.str_)

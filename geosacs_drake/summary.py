@@ -1,0 +1,127 @@
+"""The summary of a run: the study's measures (paper VI), and how well robot and program did."""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from importlib.metadata import version
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from canal.demonstration import write_and_rename
+from canal.navigation import FIELD_NAMES
+from diagrams.ik_options import IkStatus
+from diagrams.ik_system import IkStatusField
+
+
+@dataclass(frozen=True)
+class RunResult:
+    """What a finished run gives to its summary. Times in simulated seconds."""
+
+    task: str
+    seed: int
+    reason: str
+    item_names: Sequence[str]
+    placed_times: np.ndarray
+    """When each thing came to rest in its place; negative where it is not. Shape (n,)."""
+    contact_pairs: Sequence[str]
+    peak_forces: np.ndarray
+    """[N], per pair."""
+    measured_correction_distance_m: float
+    max_penetration_m: float
+    signals: Mapping[str, np.ndarray]
+    """Raw signals of `diagrams.run_log.RunLog`."""
+    realtime_factors: np.ndarray
+    """Simulated over elapsed time of each half second that was simulated."""
+
+
+def summarize(result: RunResult) -> dict[str, Any]:
+    """The summary as plain data, fit for JSON. Keys as in DESIGN, "What a person types"."""
+    navigation = {name: result.signals["navigation_state"][:, i] for i, name in enumerate(FIELD_NAMES)}
+    running = navigation["running"] > 0
+    time = result.signals["time"]
+    task_time = float(time[-1] - time[np.argmax(running)]) if running.any() else 0.0
+    correction_time = float(navigation["correction_time_s"][-1])
+    placed = result.placed_times >= 0
+    ik = result.signals["ik_status"]
+    ticks = ik[:, IkStatusField.SOLVE_TIME] > 0
+    solve_ms = 1e3 * ik[ticks, IkStatusField.SOLVE_TIME]
+    error = np.linalg.norm(result.signals["X_BT"][:, :3] - result.signals["X_BT_desired"][:, :3], axis=1)[running]
+    factors = result.realtime_factors
+    return {
+        "task": result.task,
+        "success": bool(placed.size > 0 and placed.all()),
+        "reason": result.reason,
+        "seed": result.seed,
+        "items": [
+            {"name": name, "placed": bool(ok), "time_s": _rounded(when, 3) if ok else None}
+            for name, ok, when in zip(result.item_names, placed, result.placed_times, strict=True)
+        ],
+        "task_time_s": _rounded(task_time, 3),
+        "correction_time_s": _rounded(correction_time, 3),
+        "correction_share": _rounded(correction_time / task_time if task_time > 0 else 0.0, 5),
+        "corrections": int(navigation["corrections"][-1]),
+        "correction_distance_m": _rounded(navigation["correction_distance_m"][-1], 5),
+        "measured_correction_distance_m": _rounded(result.measured_correction_distance_m, 5),
+        "backtracks": int(navigation["backtracks"][-1]),
+        "ik": {
+            "p50_ms": _percentile(solve_ms, 50, 4),
+            "p99_ms": _percentile(solve_ms, 99, 4),
+            "bound_violations": int((ik[:, IkStatusField.BOUND_VIOLATION] > BOUND_TOLERANCE).sum()),
+            "held_ticks": int((ik[ticks, IkStatusField.STATUS] == IkStatus.HELD).sum()),
+        },
+        "max_contact_force_n": {
+            pair: _rounded(force, 2) for pair, force in zip(result.contact_pairs, result.peak_forces, strict=True)
+        },
+        "max_penetration_m": _rounded(result.max_penetration_m, 6),
+        "tcp_error_m": {
+            "p50": _percentile(error, 50, 6),
+            "p95": _percentile(error, 95, 6),
+            "max": _percentile(error, 100, 6),
+        },
+        "realtime_factor": _rounded(len(factors) / (1 / factors).sum(), 3) if len(factors) else None,
+        "realtime_factor_worst_half_second": _rounded(factors.min(), 3) if len(factors) else None,
+        "version": version("geosacs-drake"),
+    }
+
+
+WALL_CLOCK_KEYS = ("ik.p50_ms", "ik.p99_ms", "realtime_factor", "realtime_factor_worst_half_second")
+"""What two runs with one seed may differ in."""
+BOUND_TOLERANCE = 1e-9
+"""[rad] Rounding of a joint command against its bounds."""
+
+
+def write_summary(path: Path, summary: Mapping[str, Any]) -> None:
+    """Write a summary as JSON, to a temporary file that is then renamed."""
+    text = json.dumps(summary, indent=2, allow_nan=False) + "\n"
+    write_and_rename(path, lambda stream: stream.write(text.encode()))
+
+
+def describe(summary: Mapping[str, Any]) -> str:
+    """The summary as a person reads it at the end of a run."""
+    placed = sum(item["placed"] for item in summary["items"])
+    lines = [
+        f"{summary['task']}: {'done' if summary['success'] else 'not done'}, {summary['reason']}",
+        f"  {placed} of {len(summary['items'])} placed in {summary['task_time_s']:.1f} s, "
+        f"{summary['corrections']} corrections over {100 * summary['correction_share']:.1f} % of the time, "
+        f"{summary['backtracks']} reversals",
+    ]
+    if summary["realtime_factor"] is not None:
+        lines.append(
+            f"  simulated at {summary['realtime_factor']:.1f} times real time "
+            f"(worst half second {summary['realtime_factor_worst_half_second']:.1f})"
+        )
+    return "\n".join(lines)
+
+
+def _rounded(value: float, digits: int) -> float | None:
+    """A plain float with so many digits; None for what is not finite (JSON knows no NaN)."""
+    return round(float(value), digits) if math.isfinite(value) else None
+
+
+def _percentile(values: np.ndarray, percent: float, digits: int) -> float | None:
+    return _rounded(float(np.percentile(values, percent)), digits) if values.size else None
