@@ -60,7 +60,7 @@ class Monitor(LeafSystem):
         options: MonitorOptions | None = None,
         period: float = 0.01,
     ) -> None:
-        """Judge thing i by `goals[i]` and watch `contact_pairs` pairs, every `period` seconds; the base is at `X_WB`."""
+        """Judge thing i by `goals[i]` and watch `contact_pairs` pairs, every `period` seconds; base at `X_WB`."""
         super().__init__()
         self._canal, self._goals = canal, goals
         self._options = options or MonitorOptions()
