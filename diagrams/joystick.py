@@ -1,0 +1,135 @@
+"""The joystick as systems: one vector, many sources. Here the recorded one, and who of two is in charge."""
+
+from __future__ import annotations
+
+import numpy as np
+from pydrake.systems.framework import BasicVector, Context, DiagramBuilder, DiscreteValues, LeafSystem, OutputPort
+
+from canal.navigation import JOYSTICK_SIZE
+from diagrams.joystick_recording import JoystickRecording
+
+K_X, K_Y, GRIPPER, REVERSE, START, STOP = range(JOYSTICK_SIZE)
+"""Places in the joystick vector: the stick along the disk's correction axes x and y, then the buttons' levels."""
+
+JOYSTICK_PERIOD = 0.05
+"""[s] A joystick is sampled at 20 Hz (paper V-D)."""
+
+
+def clean_joystick(values: np.ndarray) -> np.ndarray:
+    """A joystick vector as promised, from whatever a device gave: not finite becomes 0, the stick within the unit
+    disc, buttons 0 or 1. Shape (6,) to (6,).
+    """
+    clean = np.nan_to_num(np.asarray(values, dtype=float), nan=0.0, posinf=0.0, neginf=0.0)
+    stick = np.clip(clean[:GRIPPER], -1.0, 1.0)
+    norm = float(np.hypot(*stick))
+    if norm > 1 + 1e-9:  # the margin makes cleaning twice the same as once, bit for bit
+        stick = stick / norm
+    return np.concatenate([stick, clean[GRIPPER:] > 0.5])
+
+
+def is_touched(joystick: np.ndarray) -> bool:
+    """Whether somebody moves the stick or holds a button."""
+    return bool(np.any(joystick))
+
+
+class RecordedJoystick(LeafSystem):
+    """Plays a recording.
+
+    ```
+    RecordedJoystick → joystick (6)
+    ```
+
+    Each 20 Hz sample takes what the recording held in the middle of it, so that the log of a run, written at the
+    control rate before or after the sample's update, gives back that run bit for bit.
+    """
+
+    def __init__(self, recording: JoystickRecording, period: float = JOYSTICK_PERIOD) -> None:
+        """Play `recording`, sampled every `period` seconds."""
+        super().__init__()
+        self._recording = recording
+        self._period = period
+        self.DeclareStateOutputPort("joystick", self.DeclareDiscreteState(JOYSTICK_SIZE))
+        self.DeclarePeriodicDiscreteUpdateEvent(period, 0.0, self._sample)
+
+    @staticmethod
+    def AddToBuilder(
+        *, builder: DiagramBuilder, recording: JoystickRecording, name: str = "recorded_joystick"
+    ) -> RecordedJoystick:
+        """Add a source that plays `recording` to `builder`."""
+        return builder.AddNamedSystem(name, RecordedJoystick(recording))
+
+    def _sample(self, context: Context, discrete: DiscreteValues) -> None:
+        discrete.set_value(0, self._recording.at(context.get_time() + self._period / 2))
+
+
+class JoystickSelector(LeafSystem):
+    """Lets a person take over from the simulated operator, once and for all, by touching the joystick.
+
+    ```
+       person (6) →                  → joystick (6)
+    simulated (6) → JoystickSelector → person_in_charge (1)
+    ```
+
+    Until the person's stick leaves its centre or a button is pressed, `joystick` is `simulated`; from then on it is
+    `person`. `person_in_charge` is 1 from then on. An unconnected `person` never takes over; an unconnected
+    `simulated` rests.
+    """
+
+    def __init__(self, period: float = JOYSTICK_PERIOD) -> None:
+        """Look at the person's joystick every `period` seconds."""
+        super().__init__()
+        self._person = self.DeclareVectorInputPort("person", JOYSTICK_SIZE)
+        self._simulated = self.DeclareVectorInputPort("simulated", JOYSTICK_SIZE)
+        self._latch = self.DeclareDiscreteState(1)
+        prerequisites = {
+            self.discrete_state_ticket(self._latch),
+            self._person.ticket(),
+            self._simulated.ticket(),
+        }
+        self.DeclareVectorOutputPort("joystick", JOYSTICK_SIZE, self._calc_joystick, prerequisites)
+        self.DeclareVectorOutputPort(
+            "person_in_charge",
+            1,
+            self._calc_in_charge,
+            {self.discrete_state_ticket(self._latch), self._person.ticket()},
+        )
+        self.DeclarePeriodicDiscreteUpdateEvent(period, 0.0, self._update)
+
+    @staticmethod
+    def AddToBuilder(
+        *,
+        builder: DiagramBuilder,
+        person: OutputPort | None = None,
+        simulated: OutputPort | None = None,
+        name: str = "joystick_selector",
+    ) -> JoystickSelector:
+        """Add a selector to `builder`, connected to the sources that there are."""
+        selector = builder.AddNamedSystem(name, JoystickSelector())
+        for source, port in ((person, "person"), (simulated, "simulated")):
+            if source is not None:
+                builder.Connect(source, selector.GetInputPort(port))
+        return selector
+
+    def _person_joystick(self, context: Context) -> np.ndarray:
+        if not self._person.HasValue(context):
+            return np.zeros(JOYSTICK_SIZE)
+        return clean_joystick(self._person.Eval(context))
+
+    def _in_charge(self, context: Context) -> bool:
+        # The touch counts in the very sample that shows it; the state only remembers it.
+        latched = context.get_discrete_state(self._latch).value()[0] > 0.5
+        return latched or is_touched(self._person_joystick(context))
+
+    def _update(self, context: Context, discrete: DiscreteValues) -> None:
+        discrete.set_value(0, [float(self._in_charge(context))])
+
+    def _calc_joystick(self, context: Context, output: BasicVector) -> None:
+        if self._in_charge(context):
+            output.set_value(self._person_joystick(context))
+        elif self._simulated.HasValue(context):
+            output.set_value(clean_joystick(self._simulated.Eval(context)))
+        else:
+            output.set_value(np.zeros(JOYSTICK_SIZE))
+
+    def _calc_in_charge(self, context: Context, output: BasicVector) -> None:
+        output.set_value([float(self._in_charge(context))])

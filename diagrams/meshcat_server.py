@@ -1,0 +1,87 @@
+"""Drake's Meshcat, on this machine only, lit and framed for the task; and how to leave while a browser looks on."""
+
+from __future__ import annotations
+
+import os
+import sys
+from collections.abc import Sequence
+from typing import NoReturn
+
+import numpy as np
+from pydrake.geometry import Meshcat, MeshcatParams
+
+from canal.errors import InputError
+
+CAMERA = (2.1, -1.3, 1.75)
+"""[m] Where the eye stands, in the world: in front of the robot, to its right, at a standing person's height."""
+TARGET = (0.1, 0.25, 0.6)
+"""[m] What the eye looks at, in the world: the middle of the work space."""
+
+LOWEST_PORT, HIGHEST_PORT = 1024, 65535
+"""Ports that a program without privileges may take."""
+
+LOOK: tuple[tuple[str, str, bool | float | list[float]], ...] = (
+    # A light, warm room: pale shells stand out against its lower half, the translucent canal against its upper.
+    ("/Background/<object>", "top_color", [0.72, 0.80, 0.88]),
+    ("/Background/<object>", "bottom_color", [0.95, 0.95, 0.94]),
+    ("/Grid", "visible", False),
+    ("/Axes", "visible", False),
+    ("/Lights/AmbientLight/<object>", "intensity", 0.9),
+    ("/Lights/FillLight/<object>", "intensity", 0.6),
+    ("/Lights/PointLightNegativeX/<object>", "intensity", 12.0),
+    ("/Lights/PointLightPositiveX/<object>", "intensity", 9.0),
+)
+"""Part of the page, its property, the value."""
+
+
+def start_meshcat(
+    *, port: int | None = None, camera: Sequence[float] = CAMERA, target: Sequence[float] = TARGET
+) -> Meshcat:
+    """Serve a Meshcat page on localhost, for browsers on this machine.
+
+    Args:
+        port: TCP port; None takes the first free one from 7000 on, 0 any free one.
+        camera: where the eye stands, in the world [m]. Shape (3,).
+        target: what it looks at, in the world [m]. Shape (3,).
+
+    Returns:
+        The Meshcat; `web_url()` is its address. Only the thread that made it may call it.
+
+    Raises:
+        InputError: the port is taken or out of range.
+    """
+    if port is not None and port != 0 and not LOWEST_PORT <= port <= HIGHEST_PORT:
+        raise InputError(
+            f"port {port} is outside {LOWEST_PORT}..{HIGHEST_PORT}: give one inside, or 0 for any free one"
+        )
+    params = MeshcatParams(
+        # Drake's default listens on every interface, and whoever reaches the page moves the robot.
+        host="localhost",
+        port=port,
+        initial_properties=[
+            MeshcatParams.PropertyTuple(path=path, property=name, value=value) for path, name, value in LOOK
+        ],
+    )
+    try:
+        meshcat = Meshcat(params)
+    except RuntimeError as error:
+        if "DRAKE_ALLOW_NETWORK" in str(error):
+            raise InputError("DRAKE_ALLOW_NETWORK forbids Meshcat: unset it, or run with --headless") from error
+        which = "every port in 7000..7999 on localhost is" if port is None else f"port {port} on localhost is"
+        remedy = "give a free one with --port, or end the program that listens there"
+        raise InputError(f"{which} taken: {remedy}") from error
+    meshcat.SetCameraPose(np.asarray(camera, dtype=float), np.asarray(target, dtype=float))
+    return meshcat
+
+
+def leave(status: int, meshcat: Meshcat | None = None) -> NoReturn:
+    """End the process with `status`; at once even while a browser is connected. Write files before.
+
+    Meshcat's destructor waits for its browsers (10 s); with one connected the process ends without destructors.
+    """
+    if meshcat is not None and meshcat.GetNumActiveConnections() > 0:
+        meshcat.Flush()
+        sys.stdout.flush()
+        sys.stderr.flush()
+        os._exit(status)
+    sys.exit(status)
