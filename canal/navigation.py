@@ -4,12 +4,9 @@ The state is the disk, the point (η, φ) on it and the leg of the cycle *home, 
 along the canal, or, while the stick is off centre, on the disk alone. No clock and no robot: time comes in as `dt`.
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass, fields, replace
 from enum import IntEnum
-from typing import Literal
 
 import numpy as np
 
@@ -39,12 +36,12 @@ class Leg(IntEnum):
         return self in (Leg.PICK_TO_HOME, Leg.PLACE_TO_HOME)
 
     @property
-    def reversed(self) -> Leg:
+    def reversed(self) -> "Leg":
         """The same half of the canal the other way (backtracking, paper IV-E)."""
         return Leg(self ^ 1)
 
     @property
-    def next(self) -> Leg:
+    def next(self) -> "Leg":
         """The leg that follows in the cycle."""
         return Leg((self + 1) % 4)
 
@@ -61,7 +58,7 @@ class NavigationOptions:
     """A stick shorter than this is taken as centred."""
     eta_f: float = 0.0
     """Final ratio η_f of the homeward legs: 0 converges to the directrix, 1 diverges to the wall."""
-    decay: Literal["leg", "paper"] = "leg"
+    decay: str = "leg"
     """`leg`: η = η_f + (η_0 - η_f) exp(-a u²), u the part of the leg travelled. `paper`: exp(-λ·disks), Eq. in IV-C."""
     decay_a: float = 11.7
     """a of the default decay: what the robot's code comes to over 216 disks."""
@@ -77,6 +74,14 @@ class NavigationOptions:
     """Longest pause: fingers that never come to rest do not hold the arm up."""
 
     def __post_init__(self) -> None:
+        self.validate()
+
+    def validate(self) -> None:
+        """Check all values; a reader of YAML, which fills the fields one by one, calls it once more.
+
+        Raises:
+            InputError: a value is out of bounds.
+        """
         for name in ("speed_scale", "delta", "decay_a", "gripper_pause_limit_s"):
             if not getattr(self, name) > 0 or not math.isfinite(getattr(self, name)):
                 raise InputError(f"navigation.{name} is {getattr(self, name)}; give a number above 0")
@@ -139,7 +144,7 @@ class NavigationState:
         return np.array([getattr(self, name) for name in FIELD_NAMES])
 
     @staticmethod
-    def from_vector(vector: np.ndarray) -> NavigationState:
+    def from_vector(vector: np.ndarray) -> "NavigationState":
         """Inverse of `to_vector`."""
         return NavigationState(*np.asarray(vector, dtype=float).tolist())
 

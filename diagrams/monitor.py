@@ -1,7 +1,5 @@
 """The monitor: the study's measures, success, safety, and the end of a run with a reason (SPEC section 7)."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np
@@ -29,6 +27,10 @@ class MonitorOptions:
     """|d| below which the robot has left the goal, so that the run can end."""
 
     def __post_init__(self) -> None:
+        self.validate()
+
+    def validate(self) -> None:
+        """Check all values (see `NavigationOptions.validate`)."""
         if not self.force_limit_n > 0:
             raise InputError(f"monitor.force_limit_n is {self.force_limit_n}; give a force above 0 N")
 
@@ -89,7 +91,7 @@ class Monitor(LeafSystem):
         self.DeclarePeriodicDiscreteUpdateEvent(JUDGING_PERIOD, JUDGING_PERIOD, self._judge)
 
     @staticmethod
-    def AddToBuilder(*, builder: DiagramBuilder, name: str = "monitor", **kwargs) -> Monitor:
+    def AddToBuilder(*, builder: DiagramBuilder, name: str = "monitor", **kwargs) -> "Monitor":
         """Add a monitor to `builder`; `kwargs` as for the constructor."""
         return builder.AddNamedSystem(name, Monitor(**kwargs))
 

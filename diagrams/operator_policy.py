@@ -5,8 +5,6 @@ short ballistic pushes, each followed by a look at what came of it (intermittent
 above the thing before the gripper comes down on it, check that a grip held, and go back where it did not.
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 from enum import IntEnum
@@ -86,6 +84,10 @@ class OperatorOptions:
     """Attempts at one thing, and pushes at one that hangs out, before it is given up."""
 
     def __post_init__(self) -> None:
+        self.validate()
+
+    def validate(self) -> None:
+        """Check all values (see `NavigationOptions.validate`)."""
         if not (self.delay_s >= 0 and abs(self.delay_s / PERIOD - round(self.delay_s / PERIOD)) < 1e-9):
             raise InputError(f"operator.delay_s is {self.delay_s}; give a multiple of {PERIOD} s")
 
@@ -128,7 +130,7 @@ class OperatorState:
     SIZE = 10
 
     @staticmethod
-    def unpack(vector: np.ndarray, n: int) -> tuple[OperatorState, np.ndarray, np.ndarray]:
+    def unpack(vector: np.ndarray, n: int) -> tuple["OperatorState", np.ndarray, np.ndarray]:
         """The state, the verdicts (n,) and the tries (n,) from a vector of SIZE + 2n."""
         size = OperatorState.SIZE
         return OperatorState(*vector[:size].tolist()), vector[size : size + n].copy(), vector[size + n :].copy()
