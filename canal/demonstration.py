@@ -149,7 +149,7 @@ def _load_npz(path: Path) -> Demonstration:
         if key not in arrays:
             found = ", ".join(sorted(arrays)) or "nothing"
             raise InputError(f"{path}: has no array '{key}' (found: {found}); it needs position and orientation")
-    return Demonstration(arrays["position"], arrays["orientation"], arrays.get("time"), name=path.name)
+    return Demonstration(arrays["position"], arrays["orientation"], arrays.get("time"), path.name)  # type: ignore[arg-type]
 
 
 def _load_csv(path: Path) -> Demonstration:

@@ -79,6 +79,6 @@ def hold_at_planes(
             )
         m = np.asarray(plane.normal)
         towards = np.abs(tangents @ m) > APPROACH
-        for s in np.flatnonzero((dips(points, normals, radii, plane) > 0) & towards):
-            held.setdefault(int(s), m)
+        for dipping in np.flatnonzero((dips(points, normals, radii, plane) > 0) & towards):
+            held.setdefault(int(dipping), m)
     return held

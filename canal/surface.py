@@ -135,8 +135,8 @@ class CanalSurface:
         if ellipses is None:
             return self.radius(disk)
         i, t = self._at(disk)
-        first = _polar(*ellipses[i], phi)
-        return first + t * (_polar(*ellipses[i + 1], phi) - first)
+        first = _polar(ellipses[i], phi)
+        return first + t * (_polar(ellipses[i + 1], phi) - first)
 
     def point(self, disk: float, eta: float, phi: float) -> np.ndarray:
         """p = c + η r (cos φ x + sin φ y), [m], clipped at support planes. Shape (3,).
@@ -272,8 +272,9 @@ class CanalSurface:
         return replace(self, **changes)
 
 
-def _polar(a: float, b: float, angle: float, phi: float) -> float:
+def _polar(ellipse: list[float], phi: float) -> float:
     """Distance from the centre to the rim of an ellipse in the direction φ; 0 for one without extent."""
+    a, b, angle = ellipse
     c, s = b * math.cos(phi - angle), a * math.sin(phi - angle)
     size = math.sqrt(c * c + s * s)
     return a * b / size if size > 1e-15 else 0.0

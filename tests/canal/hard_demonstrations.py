@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 from scipy.interpolate import CubicSpline, PchipInterpolator
@@ -40,7 +41,7 @@ def _nominal(shape: str, rng: np.random.Generator) -> PchipInterpolator | CubicS
     """p(u), u in [0, 1]."""
     if shape == "straight":
         start = rng.uniform([-0.1, -0.1, 0.4], [0.2, 0.1, 0.8])
-        return CubicSpline([0, 1], [start, start + [rng.uniform(0.4, 0.8), 0, 0]])
+        return CubicSpline([0, 1], [start, start + rng.uniform(0.4, 0.8) * np.array([1.0, 0, 0])])
     u = np.linspace(0, 1, 41)
     if shape == "loop":
         a, b = rng.uniform(0.2, 0.35, 2)
@@ -125,7 +126,7 @@ def _progress(rng: np.random.Generator, h: Hardness) -> np.ndarray:
         marks += [stop, stop - rng.uniform(0.02, 0.035)]
     marks += [1.0]
     pieces = [np.zeros(int(RATE_HZ * rng.uniform(2, 5)))] if h.pauses else []
-    for a, b in zip(marks, marks[1:], strict=False):
+    for a, b in pairwise(marks):
         s = np.linspace(0, 1, max(8, int(moving * abs(b - a))))
         pieces.append(a + (b - a) * s**3 * (10 - 15 * s + 6 * s**2))
     u = np.concatenate(pieces)
