@@ -21,12 +21,6 @@ from canal.surface import CanalSurface
 _RIM = np.linspace(0.0, 2 * np.pi, 49)
 _N_DISKS_DRAWN = 60
 _N_FRAMES_DRAWN = 26
-# name, elevation, azimuth [°], the axis one looks along, place in the picture (left, bottom, width, height)
-_VIEWS = (
-    ("", 24, -52, "", (0.0, 0.02, 0.47, 0.98)),
-    ("from above", 90, -90, "z", (0.42, 0.05, 0.26, 0.9)),
-    ("from the robot (along x)", 0, 180, "x", (0.62, 0.05, 0.38, 0.9)),
-)
 
 
 def plot_canal(
@@ -53,24 +47,32 @@ def plot_canal(
     Raises:
         InputError: the file's ending is none that can be drawn, or it cannot be written.
     """
-    figure = Figure(figsize=(16, 7))
+    figure = Figure(figsize=(16, 7.5))
     curves = list(recorded) or list(canal.demonstrations)
     rims = rim_points(canal, _disks_to_draw(canal, _N_DISKS_DRAWN))
-    everything = np.concatenate([*curves, rims.reshape(-1, 3)])
-    for name, elevation, azimuth, hidden, place in _VIEWS:
-        axes = figure.add_axes(place, projection="3d", proj_type="ortho", computed_zorder=False)
-        for rim in rims:
-            axes.plot(*rim.T, color="black", lw=0.5, alpha=0.55, zorder=1)
-        for curve in curves:
-            axes.plot(*curve.T, color="red", lw=1.3, zorder=2)
-        if path is not None:
-            axes.plot(*path.T, color="green", lw=1.8, zorder=3)
-        axes.plot(*canal.directrix.T, color="blue", ls=":", lw=1.8, zorder=4)
-        for curve in corrections:
-            axes.plot(*curve.T, color="blue", lw=2.6, zorder=5)
-        _equal_box(axes, everything, hidden=hidden)
-        axes.view_init(elevation, azimuth)
-        axes.set_title(name, fontsize=10, y=0.98)
+    styled = [(rim, {"color": "black", "lw": 0.5, "alpha": 0.55, "zorder": 1}) for rim in rims]
+    styled += [(curve, {"color": "red", "lw": 1.3, "zorder": 2}) for curve in curves]
+    if path is not None:
+        styled.append((path, {"color": "green", "lw": 1.8, "zorder": 3}))
+    styled.append((canal.directrix, {"color": "blue", "ls": ":", "lw": 1.8, "zorder": 4}))
+    styled += [(curve, {"color": "blue", "lw": 2.6, "zorder": 5}) for curve in corrections]
+
+    solid = figure.add_axes((0.0, 0.03, 0.5, 0.95), projection="3d", proj_type="ortho", computed_zorder=False)
+    for curve, style in styled:
+        solid.plot(*curve.T, **style)
+    _equal_box(solid, np.concatenate([curve for curve, _ in styled]))
+    solid.view_init(24, -52)
+    # Left and right as someone at the robot sees them: y grows to the left.
+    for name, (across, up), place in (
+        ("from above", (1, 0), (0.54, 0.56, 0.44, 0.38)),
+        ("from the robot", (1, 2), (0.54, 0.13, 0.44, 0.36)),
+    ):
+        flat = figure.add_axes(place, aspect="equal", title=name)
+        for curve, style in styled:
+            flat.plot(curve[:, across], curve[:, up], **style)
+        flat.set(xlabel=f"{'xyz'[across]} [m]", ylabel=f"{'xyz'[up]} [m]")
+        flat.invert_xaxis()
+        flat.grid(alpha=0.3)
     handles = [
         Line2D([], [], color="red", label="demonstrations"),
         Line2D([], [], color="blue", ls=":", label="directrix"),
@@ -154,17 +156,14 @@ def _disks_to_draw(canal: CanalSurface, n: int) -> np.ndarray:
     return np.unique(np.linspace(0, canal.n_disks - 1, n).round().astype(int))
 
 
-def _equal_box(axes, points: np.ndarray, room: float = 0.0, hidden: str = "") -> None:
+def _equal_box(axes, points: np.ndarray, room: float = 0.0) -> None:
     """The same scale along all three axes, in metres."""
     low, high = points.min(axis=0) - room, points.max(axis=0) + room
     span = np.maximum(high - low, 0.15 * float((high - low).max()))
     middle = 0.5 * (low + high)
     for set_limits, centre, width in zip((axes.set_xlim, axes.set_ylim, axes.set_zlim), middle, span, strict=True):
         set_limits(centre - width / 2, centre + width / 2)
-    axes.set_box_aspect(span, zoom=1.15)
+    axes.set_box_aspect(span, zoom=1.0)
     axes.locator_params(nbins=5)
     axes.tick_params(labelsize=7)
-    for axis, name in ((axes.xaxis, "x"), (axes.yaxis, "y"), (axes.zaxis, "z")):
-        axis.set_label_text("" if name == hidden else f"{name} [m]", fontsize=8)
-        if name == hidden:
-            axis.set_ticks([])
+    axes.set(xlabel="x [m]", ylabel="y [m]", zlabel="z [m]")
