@@ -1,0 +1,121 @@
+"""Soft pieces in a MultibodyPlant: register them before Finalize, read them from a Context after.
+
+The material is a linear corotated solid with stiffness-proportional damping. Its numbers come from
+`benchmarks/bench_soft.py` (table in build/bench-soft.csv): softer and the fingers squeeze through, stiffer and nothing
+hangs, less damping and a pile keeps trembling.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from pydrake.common import MemoryFile
+from pydrake.geometry import (
+    AddContactMaterial,
+    GeometryId,
+    GeometryInstance,
+    IllustrationProperties,
+    InMemoryMesh,
+    Mesh,
+    PerceptionProperties,
+    ProximityProperties,
+    Rgba,
+)
+from pydrake.math import RigidTransform
+from pydrake.multibody.fem import DeformableBodyConfig, MaterialModel
+from pydrake.multibody.plant import CoulombFriction, MultibodyPlant
+from pydrake.multibody.tree import DeformableBodyId
+from pydrake.systems.framework import Context
+
+from diagrams.soft_shapes import SoftShape
+
+
+@dataclass(frozen=True)
+class SoftMaterial:
+    """What a piece is made of.
+
+    Attributes
+    ----------
+    youngs_modulus : float
+        Stiffness of the bulk (cloth with air in its folds) in [Pa].
+    poissons_ratio : float
+        Small, since gathered cloth hardly widens when it is squeezed. Unitless.
+    stiffness_damping, mass_damping : float
+        Rayleigh coefficients in [s] and [1/s]; the second stands for the air.
+    friction : float
+        Coulomb coefficient, static = dynamic. Drake combines two surfaces as 2 a b / (a + b).
+    """
+
+    youngs_modulus: float = 2.0e4
+    poissons_ratio: float = 0.2
+    stiffness_damping: float = 0.05
+    mass_damping: float = 0.5
+    friction: float = 1.0
+    model: str = "linear_corotated"
+
+
+_MODELS = {
+    "linear_corotated": MaterialModel.kLinearCorotated,
+    "corotated": MaterialModel.kCorotated,
+    "neohookean": MaterialModel.kNeoHookean,
+}
+
+
+@dataclass(frozen=True)
+class SoftItem:
+    """A registered piece: its shape and the handles to find it in a Context."""
+
+    name: str
+    shape: SoftShape
+    body_id: DeformableBodyId
+    geometry_id: GeometryId
+
+
+def add_soft_item(
+    *, plant: MultibodyPlant, name: str, shape: SoftShape, X_WP: RigidTransform, material: SoftMaterial | None = None
+) -> SoftItem:
+    """Register a piece with a plant that is not yet finalized; P is the frame of the shape at rest.
+
+    Drake's own Meshcat drawing of the coarse mesh is hidden; `soft_view` draws the fine surface.
+    """
+    material = material or SoftMaterial()
+    config = DeformableBodyConfig()
+    config.set_youngs_modulus(material.youngs_modulus)
+    config.set_poissons_ratio(material.poissons_ratio)
+    config.set_stiffness_damping_coefficient(material.stiffness_damping)
+    config.set_mass_damping_coefficient(material.mass_damping)
+    config.set_mass_density(shape.density())
+    config.set_material_model(_MODELS[material.model])
+    mesh = Mesh(InMemoryMesh(mesh_file=MemoryFile(shape.mesh.to_vtk(), ".vtk", f"{name}.vtk")))
+    geometry = GeometryInstance(X_WP, mesh, name)
+    properties = ProximityProperties()
+    AddContactMaterial(properties=properties, friction=CoulombFriction(material.friction, material.friction))
+    geometry.set_proximity_properties(properties)
+    hidden = IllustrationProperties()
+    hidden.AddProperty("meshcat", "accepting", "nobody")  # a visualizer draws what names its prefix, or no prefix
+    geometry.set_illustration_properties(hidden)
+    seen = PerceptionProperties()  # cameras see the coarse solid, in the mean colour of the surface
+    seen.AddProperty("phong", "diffuse", Rgba(*shape.surface.colors.mean(axis=0), 1.0))
+    geometry.set_perception_properties(seen)
+    model = plant.mutable_deformable_model()
+    body_id = model.RegisterDeformableBody(geometry, config, 1.0)  # the hint is ignored for a mesh
+    return SoftItem(name, shape, body_id, model.GetGeometryId(body_id))
+
+
+def soft_positions(plant: MultibodyPlant, context: Context, item: SoftItem) -> np.ndarray:
+    """Node positions p_WN in [m], shape (N, 3)."""
+    return plant.deformable_model().GetPositions(context, item.body_id).T
+
+
+def soft_velocities(plant: MultibodyPlant, context: Context, item: SoftItem) -> np.ndarray:
+    """Node velocities v_WN in [m/s], shape (N, 3)."""
+    return plant.deformable_model().GetVelocities(context, item.body_id).T
+
+
+def node_masses(shape: SoftShape) -> np.ndarray:
+    """Lumped masses in [kg], shape (N,): a quarter of each tetrahedron to each corner, as in the solver."""
+    masses = np.zeros(len(shape.mesh.vertices))
+    share = shape.density() * shape.mesh.volumes() / 4.0
+    np.add.at(masses, shape.mesh.tetrahedra, share[:, None])
+    return masses

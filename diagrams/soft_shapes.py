@@ -1,0 +1,215 @@
+"""Three kinds of laundry: a sock, a T-shirt gathered as one picks it up, a towel rolled lengthwise.
+
+Each is a tube (or three) of a few cells for the solver and the same tube in fine rings for the eye: folds run along the
+axis, hems are thicker, cuffs, bands and stripes are colours. Sizes and weights are those of real pieces: [m], [kg].
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from canal.errors import InputError
+from diagrams.soft_meshes import EmbeddedSurface, TetBuilder, TetMesh, Tube, embed
+
+Rgb = tuple[float, float, float]
+
+
+@dataclass(frozen=True)
+class SoftShape:
+    """One piece: the solid, the surface drawn for it, and its mass in [kg]. Lies around the origin, z up."""
+
+    kind: str
+    mesh: TetMesh
+    surface: EmbeddedSurface
+    mass: float
+
+    def density(self) -> float:
+        """Mass density in [kg/m³]: of cloth with the air between its folds."""
+        return self.mass / float(self.mesh.volumes().sum())
+
+
+@dataclass(frozen=True)
+class _Skin:
+    """How a tube is drawn: rings × sectors, folds as relative depth, colour by (s, angle)."""
+
+    tube: Tube
+    rings: int
+    sectors: int
+    fold: Callable[[np.ndarray, np.ndarray], np.ndarray]
+    color: Callable[[np.ndarray, np.ndarray], np.ndarray]
+    mouth: Rgb  # colour of the end at s = 1, e.g. the dark inside of a sleeve
+
+
+def make_shape(kind: str, color: Rgb | None = None) -> SoftShape:
+    """Make a piece of the given kind: `sock`, `tshirt` or `towel`, in its own colour or the given one.
+
+    Raises
+    ------
+    InputError
+        For a kind that does not exist.
+    """
+    if kind not in SOFT_KINDS:
+        raise InputError(f"soft item kind {kind!r} does not exist; use one of {', '.join(SOFT_KINDS)}")
+    return SOFT_KINDS[kind](color)
+
+
+def _finish(kind: str, mesh: TetMesh, skins: Sequence[_Skin], mass: float) -> SoftShape:
+    """Centre the piece on its centre of mass, embed the skins."""
+    volumes = mesh.volumes()
+    centers = mesh.vertices[mesh.tetrahedra].mean(axis=1)
+    center = volumes @ centers / volumes.sum()
+    parts = [_draw(skin) for skin in skins]
+    points = np.concatenate([p for p, _, _ in parts])
+    offsets = np.cumsum([0] + [len(p) for p, _, _ in parts[:-1]])
+    triangles = np.concatenate([t + o for (_, t, _), o in zip(parts, offsets, strict=True)])
+    corners, weights = embed(mesh, points)
+    surface = EmbeddedSurface(corners, weights, triangles, np.concatenate([c for _, _, c in parts]))
+    return SoftShape(kind, TetMesh(mesh.vertices - center, mesh.tetrahedra), surface, mass)
+
+
+def _draw(skin: _Skin) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Rings along the tube, closed at both ends: points (n, 3), triangles (m, 3), colours (n, 3)."""
+    n, m = skin.rings, skin.sectors
+    s, angle = np.meshgrid(np.linspace(0.0, 1.0, n), np.arange(m) * 2.0 * np.pi / m, indexing="ij")
+    depth = skin.fold(s, angle)
+    points = skin.tube.at(s, depth * np.cos(angle), depth * np.sin(angle)).reshape(-1, 3)
+    colors = skin.color(s, angle).reshape(-1, 3)
+    ends = skin.tube.at(np.array([0.015, 0.96]), np.zeros(2), np.zeros(2))
+    ring, sector = (a.ravel() for a in np.meshgrid(np.arange(n - 1), np.arange(m), indexing="ij"))
+    a, b = ring * m + sector, ring * m + (sector + 1) % m
+    j = np.arange(m)
+    first, last = n * m, n * m + 1
+    triangles = [
+        np.stack([a, b, a + m], axis=1),
+        np.stack([b, b + m, a + m], axis=1),
+        np.stack([np.full(m, first), (j + 1) % m, j], axis=1),
+        np.stack([np.full(m, last), (n - 1) * m + j, (n - 1) * m + (j + 1) % m], axis=1),
+    ]
+    return np.vstack([points, ends]), np.concatenate(triangles), np.vstack([colors, colors[0], skin.mouth])
+
+
+def _bands(s: np.ndarray, base: Rgb, bands: Sequence[tuple[float, float, Rgb]]) -> np.ndarray:
+    """Colour by s: `base`, and (from, to, colour) on top. Shape (*s.shape, 3)."""
+    colors = np.broadcast_to(np.array(base), (*s.shape, 3)).copy()
+    for low, high, color in bands:
+        colors[(s >= low) & (s <= high)] = color
+    return colors
+
+
+def _shade(colors: np.ndarray, depth: np.ndarray) -> np.ndarray:
+    """Darken the valleys of the folds, as light would."""
+    return np.clip(colors * (0.55 + 0.45 * depth / depth.max())[..., None], 0.0, 1.0)
+
+
+def _mix(color: Rgb, other: Rgb, share: float) -> Rgb:
+    r, g, b = (float((1.0 - share) * x + share * y) for x, y in zip(color, other, strict=True))
+    return r, g, b
+
+
+def _sock(color: Rgb | None) -> SoftShape:
+    base = color or (0.85, 0.16, 0.20)
+    white: Rgb = (0.95, 0.94, 0.90)
+    tube = Tube.bent(
+        np.zeros(3),
+        0.20,
+        lambda s: 1.35 / (1.0 + np.exp(-(s - 0.52) * 18.0)),
+        lambda s: 0.027 + 0.004 * np.exp(-(((s - 0.52) / 0.10) ** 2)) - 0.006 * np.clip(s - 0.85, 0, 1) / 0.15,
+        lambda s: 0.022 - 0.004 * s,
+    )
+
+    def fold(s: np.ndarray, angle: np.ndarray) -> np.ndarray:
+        ribs = 0.05 * np.cos(9.0 * angle) * (s < 0.24)
+        wrinkles = 0.05 * np.sin(37.0 * s + 2.0 * np.sin(angle)) * np.exp(-(((s - 0.5) / 0.16) ** 2))
+        toe = np.sqrt(np.clip(1.0 - (np.clip(s - 0.86, 0.0, 1.0) / 0.16) ** 2, 0.05, 1.0))
+        return (0.95 + ribs + wrinkles) * toe
+
+    def paint(s: np.ndarray, angle: np.ndarray) -> np.ndarray:
+        stripes = [(0.25 + 0.085 * i, 0.29 + 0.085 * i, white) for i in range(3)]
+        colors = _bands(s, base, [(0.0, 0.2, white), *stripes, (0.86, 1.0, white)])
+        heel = (np.abs(s - 0.53) < 0.075) & (np.cos(angle) < -0.2)
+        colors[heel] = white
+        return _shade(colors, fold(s, angle))
+
+    builder = TetBuilder()
+    builder.add_tube(tube, segments=6)
+    return _finish("sock", builder.mesh(), [_Skin(tube, 30, 18, fold, paint, white)], mass=0.06)
+
+
+def _tshirt(color: Rgb | None) -> SoftShape:
+    base = color or (0.13, 0.42, 0.72)
+    dark, light = _mix(base, (0.0, 0.0, 0.0), 0.65), _mix(base, (1.0, 1.0, 1.0), 0.75)
+    body = Tube.bent(
+        np.zeros(3),
+        0.25,
+        lambda s: 0.5 * np.sin(2.0 * np.pi * s),
+        lambda s: 0.043 - 0.008 * np.sin(np.pi * s),
+        lambda s: 0.033 - 0.004 * s,
+    )
+    builder = TetBuilder()
+    segments = 6
+    sections = builder.add_tube(body, segments)
+    sleeves = []
+    for sign, side in ((1, 0), (-1, 2)):
+        root = np.arctan2(*(body.axis[-8] - body.axis[-16])[[1, 0]])
+        sleeve = Tube.bent(
+            body.at(np.array(4.5 / segments), np.array(0.0), np.array(0.0)),
+            0.13,
+            lambda s, sign=sign, root=root: root + sign * (1.75 + 0.35 * s),  # type: ignore[misc]
+            lambda s: 0.030 + 0.003 * s,
+            lambda s: 0.027 - 0.003 * s,
+        )
+        builder.add_branch(sections[4], sections[5], side, sleeve, (0.65, 1.0))
+        sleeves.append(sleeve)
+
+    def fold(s: np.ndarray, angle: np.ndarray) -> np.ndarray:
+        flare = 0.09 + 0.09 * np.exp(-s / 0.2)
+        gathers = np.cos(7.0 * angle + 2.5 * np.sin(5.0 * s)) + 0.5 * np.cos(4.0 * angle - 9.0 * s + 1.0)
+        collar = np.where(s > 0.9, 0.75 - 0.12 * (s - 0.9) / 0.1, 0.93)
+        return collar + flare * gathers * np.where(s > 0.9, 0.25, 1.0)
+
+    def paint(s: np.ndarray, angle: np.ndarray) -> np.ndarray:
+        chest = [(0.52, 0.58, light), (0.61, 0.64, light)]
+        return _shade(_bands(s, base, [*chest, (0.0, 0.04, dark), (0.95, 1.0, light)]), fold(s, angle))
+
+    def sleeve_fold(s: np.ndarray, angle: np.ndarray) -> np.ndarray:
+        return 0.92 + 0.07 * np.cos(5.0 * angle + 3.0 * s) + 0.03 * np.cos(3.0 * angle - 8.0 * s)
+
+    def sleeve_paint(s: np.ndarray, angle: np.ndarray) -> np.ndarray:
+        return _shade(_bands(s, base, [(0.9, 1.0, light)]), sleeve_fold(s, angle))
+
+    skins = [_Skin(body, 28, 24, fold, paint, dark)]
+    skins += [_Skin(tube, 12, 18, sleeve_fold, sleeve_paint, dark) for tube in sleeves]
+    return _finish("tshirt", builder.mesh(), skins, mass=0.17)
+
+
+def _towel(color: Rgb | None) -> SoftShape:
+    base = color or (0.93, 0.72, 0.25)
+    stripe, fringe = _mix(base, (0.35, 0.10, 0.05), 0.75), _mix(base, (1.0, 1.0, 1.0), 0.7)
+    tube = Tube.bent(
+        np.zeros(3),
+        0.28,
+        lambda s: 0.25 * np.sin(np.pi * s + 0.4),
+        lambda s: 0.046 - 0.006 * np.sin(np.pi * s) ** 2,
+        lambda s: 0.039 - 0.004 * np.sin(np.pi * s) ** 2,
+    )
+
+    def fold(s: np.ndarray, angle: np.ndarray) -> np.ndarray:
+        turn = (angle - 0.7 + 0.25 * np.sin(4.0 * s)) % (2.0 * np.pi)
+        seam = 0.16 * (turn / (2.0 * np.pi))  # a roll: the radius grows by one layer a turn, and steps at the free edge
+        creases = 0.035 * np.cos(6.0 * angle + 11.0 * s) + 0.03 * np.sin(25.0 * s + 3.0 * np.cos(angle))
+        return 0.82 + seam + creases
+
+    def paint(s: np.ndarray, angle: np.ndarray) -> np.ndarray:
+        bands = [(0.0, 0.03, fringe), (0.97, 1.0, fringe)]
+        bands += [(x, x + 0.05, stripe) for x in (0.10, 0.18, 0.77, 0.85)]
+        return _shade(_bands(s, base, bands), fold(s, angle))
+
+    builder = TetBuilder()
+    builder.add_tube(tube, segments=7)
+    return _finish("towel", builder.mesh(), [_Skin(tube, 34, 26, fold, paint, stripe)], mass=0.30)
+
+
+SOFT_KINDS: dict[str, Callable[[Rgb | None], SoftShape]] = {"sock": _sock, "tshirt": _tshirt, "towel": _towel}
