@@ -1,0 +1,75 @@
+"""Contact forces by pair, and how deep anything lies in the surroundings."""
+
+from __future__ import annotations
+
+import numpy as np
+from pydrake.common.value import Value
+from pydrake.geometry import GeometryId, QueryObject, SceneGraph
+from pydrake.multibody.plant import ContactResults, MultibodyPlant
+from pydrake.systems.framework import BasicVector, Context, LeafSystem
+
+from diagrams.scene import Scene
+
+
+class ContactSensor(LeafSystem):
+    """Watches the robot against each thing of the surroundings.
+
+    ```
+     contact_results → ┌───────────────┐ → contact_forces (pairs) [N]
+                       │ ContactSensor │
+      geometry_query → └───────────────┘ → penetration (1) [m]
+    ```
+
+    A pair's force is the sum of the magnitudes of its contacts, so that a squeeze counts too. `penetration` is the
+    deepest overlap of any rigid shape with the surroundings.
+    """
+
+    def __init__(self, plant: MultibodyPlant, scene_graph: SceneGraph, scene: Scene) -> None:
+        """Watch the scene; names of the pairs are then in `contact_pairs`."""
+        super().__init__()
+        self.contact_pairs = [f"lio-{name}" for name in scene.things]
+        self._lio = {int(b) for b in plant.GetBodyIndices(scene.lio)}
+        self._thing_of_body: dict[int, int] = {}
+        for k, models in enumerate(scene.things.values()):
+            for model in models:
+                self._thing_of_body.update({int(b): k for b in plant.GetBodyIndices(model)})
+        inspector = scene_graph.model_inspector()
+        self._body: dict[GeometryId, int] = {
+            g: int(plant.GetBodyFromFrameId(inspector.GetFrameId(g)).index()) for g in inspector.GetAllGeometryIds()
+        }
+        self._results = self.DeclareAbstractInputPort("contact_results", Value[ContactResults]())
+        self._query = self.DeclareAbstractInputPort("geometry_query", Value[QueryObject]())
+        self.DeclareVectorOutputPort(
+            "contact_forces", len(self.contact_pairs), self._calc_forces, {self._results.ticket()}
+        )
+        self.DeclareVectorOutputPort("penetration", 1, self._calc_penetration, {self._query.ticket()})
+
+    def _pair(self, a: int, b: int) -> int | None:
+        if a in self._lio:
+            return self._thing_of_body.get(b)
+        return self._thing_of_body.get(a) if b in self._lio else None
+
+    def _calc_forces(self, context: Context, output: BasicVector) -> None:
+        results = self._results.Eval(context)
+        forces = np.zeros(len(self.contact_pairs))
+        for i in range(results.num_point_pair_contacts()):
+            point = results.point_pair_contact_info(i)
+            pair = self._pair(int(point.bodyA_index()), int(point.bodyB_index()))
+            if pair is not None:
+                forces[pair] += np.linalg.norm(point.contact_force())
+        for i in range(results.num_hydroelastic_contacts()):
+            patch = results.hydroelastic_contact_info(i)
+            surface = patch.contact_surface()
+            pair = self._pair(self._body[surface.id_M()], self._body[surface.id_N()])
+            if pair is not None:
+                forces[pair] += np.linalg.norm(patch.F_Ac_W().translational())
+        output.SetFromVector(forces)
+
+    def _calc_penetration(self, context: Context, output: BasicVector) -> None:
+        overlaps = self._query.Eval(context).ComputePointPairPenetration()
+        depths = [
+            o.depth
+            for o in overlaps
+            if self._body[o.id_A] in self._thing_of_body or self._body[o.id_B] in self._thing_of_body
+        ]
+        output.SetFromVector([max(depths, default=0.0)])

@@ -1,0 +1,89 @@
+"""Where the items are: poses, bounds and speeds, of rigid and of soft ones alike."""
+
+from __future__ import annotations
+
+import numpy as np
+from pydrake.common.value import AbstractValue, Value
+from pydrake.geometry import QueryObject
+from pydrake.math import RigidTransform
+from pydrake.multibody.math import SpatialVelocity
+from pydrake.systems.framework import BasicVector, Context, DiscreteValues, LeafSystem
+
+from diagrams.pose_vector import pose_to_vector
+from diagrams.scene import RigidItem, Scene
+from diagrams.shape_bounds import union_bounds
+from diagrams.soft_items import SoftItem
+
+PERIOD = 0.01
+
+
+class ItemSensor(LeafSystem):
+    """Measures n items, in the order of the scenario, in W.
+
+    ```
+          body_poses → ┌────────────┐ → item_poses (7 n: position [m], quaternion w x y z)
+     body_velocities → │ ItemSensor │ → item_bounds (6 n: least and greatest x, y, z of the whole shape [m])
+      geometry_query → └────────────┘ → item_speeds (n: of the middle [m/s])
+    ```
+
+    A soft item's pose is the mean of its nodes, not turned; its speed is that of the mean over the last 10 ms.
+    """
+
+    def __init__(self, scene: Scene) -> None:
+        """Read the items of a scene whose plant is finalized."""
+        super().__init__()
+        self._items = scene.items
+        self._soft = [k for k, item in enumerate(scene.items) if isinstance(item, SoftItem)]
+        n = len(scene.items)
+        self._poses = self.DeclareAbstractInputPort("body_poses", AbstractValue.Make([RigidTransform()]))
+        self._velocities = self.DeclareAbstractInputPort("body_velocities", AbstractValue.Make([SpatialVelocity()]))
+        self._query = self.DeclareAbstractInputPort("geometry_query", Value[QueryObject]())
+        # Middles of the soft items, before and now; NaN until measured.
+        self._middles = self.DeclareDiscreteState(np.full(6 * len(self._soft), np.nan))
+        self.DeclareVectorOutputPort("item_poses", 7 * n, self._calc_poses)
+        self.DeclareVectorOutputPort("item_bounds", 6 * n, self._calc_bounds)
+        self.DeclareVectorOutputPort("item_speeds", n, self._calc_speeds)
+        if self._soft:
+            self.DeclarePeriodicDiscreteUpdateEvent(PERIOD, 0.0, self._update)
+
+    def _nodes(self, context: Context, item: SoftItem) -> np.ndarray:
+        query = self._query.Eval(context)
+        return query.GetConfigurationsInWorld(item.geometry_id).reshape(-1, 3)
+
+    def _calc_poses(self, context: Context, output: BasicVector) -> None:
+        poses = self._poses.Eval(context)
+        rows = []
+        for item in self._items:
+            if isinstance(item, RigidItem):
+                rows.append(pose_to_vector(poses[int(item.body.index())]))
+            else:
+                rows.append(np.concatenate([self._nodes(context, item).mean(axis=0), [1.0, 0.0, 0.0, 0.0]]))
+        output.SetFromVector(np.concatenate(rows))
+
+    def _calc_bounds(self, context: Context, output: BasicVector) -> None:
+        poses = self._poses.Eval(context)
+        rows = []
+        for item in self._items:
+            if isinstance(item, RigidItem):
+                rows.append(union_bounds(item.extents, poses[int(item.body.index())]))
+            else:
+                nodes = self._nodes(context, item)
+                rows.append(np.concatenate([nodes.min(axis=0), nodes.max(axis=0)]))
+        output.SetFromVector(np.concatenate(rows))
+
+    def _calc_speeds(self, context: Context, output: BasicVector) -> None:
+        velocities = self._velocities.Eval(context)
+        speeds = np.zeros(len(self._items))
+        for k, item in enumerate(self._items):
+            if isinstance(item, RigidItem):
+                speeds[k] = np.linalg.norm(velocities[int(item.body.index())].translational())
+        if self._soft:
+            before, now = context.get_discrete_state(self._middles).value().reshape(2, -1, 3)
+            moved = np.linalg.norm(now - before, axis=1) / PERIOD
+            speeds[self._soft] = np.where(np.isfinite(moved), moved, 0.0)
+        output.SetFromVector(speeds)
+
+    def _update(self, context: Context, discrete: DiscreteValues) -> None:
+        now = context.get_discrete_state(self._middles).value().reshape(2, -1)[1]
+        nodes = [self._nodes(context, self._items[k]) for k in self._soft]
+        discrete.set_value(self._middles, np.concatenate([now, *(p.mean(axis=0) for p in nodes)]))

@@ -1,0 +1,55 @@
+"""The drives' desired state: the arm's as it comes, the gripper's as a ramp."""
+
+from __future__ import annotations
+
+import numpy as np
+from pydrake.systems.framework import BasicVector, Context, DiscreteValues, LeafSystem
+
+ARM = 6
+OPEN_ANGLE = 0.5236
+"""Angle of the open gripper [rad] (SPEC section 6)."""
+CLOSE_TARGET = -0.1
+"""Where the closed gripper aims [rad]: past closed, so that the drive's effort limit makes the grip, not its spring."""
+GRIPPER_SPEED = 1.047
+"""[rad/s] (SPEC section 6)."""
+PERIOD = 0.01
+
+
+class LioDrive(LeafSystem):
+    """Joins what the arm and the gripper are wanted to do.
+
+    ```
+     desired_state (12: q, v) → ┌──────────┐
+                                │ LioDrive │ → actuator_state (14: q of arm and gripper, v of both)
+       gripper_command (1)    → └──────────┘
+    ```
+
+    A desired state that is not finite, which the IK never gives, holds the last one that was.
+    """
+
+    def __init__(self, q0: np.ndarray) -> None:
+        """Start at the arm posture `q0` (6,) with the gripper open."""
+        super().__init__()
+        self._desired = self.DeclareVectorInputPort("desired_state", 2 * ARM)
+        self._command = self.DeclareVectorInputPort("gripper_command", 1)
+        # The gripper's target and its rate, then the arm's last posture.
+        state = self.DeclareDiscreteState(np.concatenate([[OPEN_ANGLE, 0.0], q0]))
+        self._state = state
+        self.DeclareVectorOutputPort("actuator_state", 2 * (ARM + 1), self._calc)
+        self.DeclarePeriodicDiscreteUpdateEvent(PERIOD, 0.0, self._update)
+
+    def _update(self, context: Context, discrete: DiscreteValues) -> None:
+        last = context.get_discrete_state(self._state).value()
+        closed = self._command.Eval(context)[0] > 0.5
+        step = GRIPPER_SPEED * PERIOD
+        target = min(max(CLOSE_TARGET if closed else OPEN_ANGLE, last[0] - step), last[0] + step)
+        desired = self._desired.Eval(context)
+        q = desired[:ARM] if np.isfinite(desired).all() else last[2:]
+        discrete.set_value(self._state, np.concatenate([[target, (target - last[0]) / PERIOD], q]))
+
+    def _calc(self, context: Context, output: BasicVector) -> None:
+        state = context.get_discrete_state(self._state).value()
+        desired = self._desired.Eval(context)
+        if not np.isfinite(desired).all():
+            desired = np.concatenate([state[2:], np.zeros(ARM)])
+        output.SetFromVector([*desired[:ARM], state[0], *desired[ARM:], state[1]])

@@ -1,0 +1,149 @@
+"""The Lio station: the robot with its controllers, in a scene with contact."""
+
+from __future__ import annotations
+
+import numpy as np
+from pydrake.geometry import SceneGraph
+from pydrake.math import RigidTransform
+from pydrake.multibody.plant import AddMultibodyPlant, MultibodyPlant, MultibodyPlantConfig
+from pydrake.multibody.tree import ModelInstanceIndex, PdControllerGains
+from pydrake.systems.framework import Context, Diagram, DiagramBuilder
+
+from canal.errors import InputError
+from diagrams.contact_sensor import ContactSensor
+from diagrams.goals import Goal
+from diagrams.item_sensor import ItemSensor
+from diagrams.layout import make_goals
+from diagrams.lio_drive import ARM, OPEN_ANGLE, LioDrive
+from diagrams.lio_sensors import JOINTS, LioSensor
+from diagrams.scenario import Scenario
+from diagrams.scene import Scene, add_scene, check_overlaps
+
+START_POSTURE = np.array([-1.62113, -1.19688, 1.27447, 0.02532, 1.48154, -0.05674])
+"""[rad] (SPEC section 6)."""
+
+STIFFNESS = (6000.0, 6000.0, 5000.0, 2500.0, 1500.0, 900.0)
+"""Of the arm's drives [N m/rad]; with DAMPING and velocity feed-forward the arm lags 4 mm at 1.4 rad/s."""
+DAMPING = (150.0, 150.0, 120.0, 60.0, 35.0, 20.0)
+"""[N m s/rad]"""
+GRIP_STIFFNESS, GRIP_DAMPING = 200.0, 4.0
+"""Of the gripper's drive [N m/rad], [N m s/rad]."""
+GRIP_EFFORT = 3.0
+"""[N m] of the 50 that the drive has: 24 N at the fingertips hold all that is here, and hurt nobody."""
+ROTOR_INERTIA = 0.02
+"""Of arm drives, reflected to the joint [kg m²]: a stand-in for gears that are not published, small beside the links."""
+
+
+class LioStation(Diagram):
+    """The robot among things, to be commanded like the real one.
+
+    ```
+     desired_state (12: q, v) → ┌────────────┐ → q (6), v (6), gripper_state (2: angle, rate), X_BT (7)
+                                │ LioStation │ → item_poses (7 n), item_bounds (6 n), item_speeds (n)
+       gripper_command (1)    → └────────────┘ → contact_forces (pairs) [N], penetration (1) [m]
+    ```
+
+    The gripper closes at a command of 1, opens at 0. Items are in the order of the scenario, in W; `contact_pairs` names
+    the pairs. Gravity does not act on the arm's model: ideal compensation, as the real drives have it.
+    """
+
+    def __init__(self, scenario: Scenario, *, seed: int = 0, q0: np.ndarray = START_POSTURE) -> None:
+        """Build the scene of a scenario, its items drawn from `seed`, the arm in posture `q0` (6,) [rad].
+
+        Raises:
+            InputError: a model does not exist, items do not fit, things overlap, or `q0` is beyond a limit.
+        """
+        super().__init__()
+        builder = DiagramBuilder()
+        contact = scenario.contact
+        config = MultibodyPlantConfig(
+            time_step=contact.time_step,
+            discrete_contact_approximation=contact.approximation,
+            contact_model=contact.model,
+            contact_surface_representation="polygon",
+        )
+        plant, scene_graph = AddMultibodyPlant(config, builder)
+        self.plant: MultibodyPlant = plant
+        self.scene_graph: SceneGraph = scene_graph
+        self.scene: Scene = add_scene(plant=plant, scene_graph=scene_graph, scenario=scenario, seed=seed)
+        self.goals: list[Goal] = make_goals(scenario, self.scene.marks, self.scene.rest_heights)
+        lio = self.scene.lio
+        set_drives(plant, lio)
+        plant.set_gravity_enabled(lio, False)
+        plant.Finalize()
+        plant.SetDefaultPositions(lio, checked_posture(plant, lio, q0))
+
+        drive = builder.AddNamedSystem("lio_drive", LioDrive(np.asarray(q0, dtype=float)))
+        sensor = builder.AddNamedSystem("lio_sensor", LioSensor(plant, lio, self.scene.X_WB))
+        items = builder.AddNamedSystem("item_sensor", ItemSensor(self.scene))
+        touch = builder.AddNamedSystem("contact_sensor", ContactSensor(plant, scene_graph, self.scene))
+        self.contact_pairs: list[str] = touch.contact_pairs
+
+        builder.Connect(drive.GetOutputPort("actuator_state"), plant.get_desired_state_input_port(lio))
+        builder.Connect(plant.get_state_output_port(lio), sensor.GetInputPort("lio_state"))
+        poses, query = plant.get_body_poses_output_port(), scene_graph.get_query_output_port()
+        builder.Connect(poses, sensor.GetInputPort("body_poses"))
+        builder.Connect(poses, items.GetInputPort("body_poses"))
+        builder.Connect(plant.get_body_spatial_velocities_output_port(), items.GetInputPort("body_velocities"))
+        builder.Connect(query, items.GetInputPort("geometry_query"))
+        builder.Connect(query, touch.GetInputPort("geometry_query"))
+        builder.Connect(plant.get_contact_results_output_port(), touch.GetInputPort("contact_results"))
+        for name in ("desired_state", "gripper_command"):
+            builder.ExportInput(drive.GetInputPort(name), name)
+        for system in (sensor, items, touch):
+            for k in range(system.num_output_ports()):
+                port = system.get_output_port(k)
+                builder.ExportOutput(port, port.get_name())
+        builder.ExportOutput(query, "geometry_query")
+        builder.BuildInto(self)
+        self.set_name("lio_station")
+        context = self.CreateDefaultContext()
+        check_overlaps(
+            plant=plant, scene_graph=scene_graph, context=scene_graph.GetMyContextFromRoot(context), scene=self.scene
+        )
+
+    @property
+    def X_WB(self) -> RigidTransform:
+        """Where the base stands."""
+        return self.scene.X_WB
+
+    @staticmethod
+    def AddToBuilder(
+        *, builder: DiagramBuilder, scenario: Scenario, seed: int = 0, q0: np.ndarray = START_POSTURE
+    ) -> LioStation:
+        """Build a station and add it; its inputs are left to connect."""
+        return builder.AddNamedSystem("lio_station", LioStation(scenario, seed=seed, q0=q0))
+
+    def plant_context(self, context: Context) -> Context:
+        """The plant's part of the context of any diagram that this station is in."""
+        return self.plant.GetMyContextFromRoot(context)
+
+
+def set_drives(plant: MultibodyPlant, lio: ModelInstanceIndex) -> None:
+    """Give each actuator of the Lio its controller; before the plant is finalized."""
+    for k in range(ARM):
+        drive = plant.GetJointActuatorByName(f"lio_joint_{k + 1}", lio)
+        drive.set_controller_gains(PdControllerGains(p=STIFFNESS[k], d=DAMPING[k]))
+        drive.set_default_rotor_inertia(ROTOR_INERTIA)
+    grip = plant.GetJointActuatorByName("lio_finger_left", lio)
+    grip.set_controller_gains(PdControllerGains(p=GRIP_STIFFNESS, d=GRIP_DAMPING))
+    grip.set_effort_limit(GRIP_EFFORT)
+
+
+def checked_posture(plant: MultibodyPlant, lio: ModelInstanceIndex, q0: np.ndarray) -> np.ndarray:
+    """The positions of the model: arm at `q0` (6,), gripper open.
+
+    Raises:
+        InputError: a joint is beyond its limits, or not finite.
+    """
+    q0 = np.asarray(q0, dtype=float)
+    if q0.shape != (ARM,) or not np.isfinite(q0).all():
+        raise InputError(f"start posture {q0.tolist()} is not {ARM} finite numbers; give one angle a joint in radians")
+    for k, value in enumerate(q0):
+        joint = plant.GetJointByName(f"lio_joint_{k + 1}", lio)
+        low, high = joint.position_lower_limit(), joint.position_upper_limit()
+        if not low <= value <= high:
+            raise InputError(f"start posture: joint {k + 1} at {value:.3f} rad is not within {low:.3f} .. {high:.3f}")
+    positions = np.full(JOINTS, OPEN_ANGLE)
+    positions[:ARM] = q0
+    return positions

@@ -1,0 +1,189 @@
+"""The scene of a scenario: robot, things, items and marks in a MultibodyPlant, before it is finalized."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+from pydrake.geometry import Cylinder, GeometryId, Role, SceneGraph
+from pydrake.math import RigidTransform, RollPitchYaw, RotationMatrix
+from pydrake.multibody.parsing import Parser
+from pydrake.multibody.plant import MultibodyPlant
+from pydrake.multibody.tree import ModelInstanceIndex, RigidBody
+
+from canal.errors import InputError
+from diagrams.layout import Spot, draw_layout
+from diagrams.scenario import Item, Robot, Scenario, Thing
+from diagrams.shape_bounds import Extent, extent, union_bounds
+from diagrams.soft_items import SoftItem, add_soft_item
+from diagrams.soft_shapes import make_shape
+from models import LIO_URDF, MODELS
+
+DROP = 0.001
+"""Items start this far above their surface [m], and settle."""
+OVERLAP = 0.003
+"""What may lie inside another at the start [m]: a basket stands on a table, a door on its hinge."""
+MARK_RADIUS = 0.045
+MARK_COLORS = {"apple": (0.83, 0.14, 0.13), "cup": (0.05, 0.55, 0.60), "cube": (0.95, 0.68, 0.18)}
+"""A mark wears the colour of its item."""
+
+
+@dataclass(frozen=True)
+class RigidItem:
+    """An item that is one rigid body."""
+
+    name: str
+    body: RigidBody
+    extents: list[Extent]
+
+
+@dataclass
+class Scene:
+    """Handles to what was added to the plant."""
+
+    scenario: Scenario
+    lio: ModelInstanceIndex
+    X_WB: RigidTransform
+    things: dict[str, list[ModelInstanceIndex]] = field(default_factory=dict)
+    """By name; things that share a name are watched as one."""
+    items: list[RigidItem | SoftItem] = field(default_factory=list)
+    """In the order of the scenario."""
+    marks: list[Spot | None] = field(default_factory=list)
+    rest_heights: list[float] = field(default_factory=list)
+    """Of each item's origin above the surface it stands on [m]."""
+
+    @property
+    def rigid_items(self) -> list[RigidItem]:
+        """Those that are rigid bodies."""
+        return [item for item in self.items if isinstance(item, RigidItem)]
+
+    @property
+    def soft_items(self) -> list[SoftItem]:
+        """Those that are deformable."""
+        return [item for item in self.items if isinstance(item, SoftItem)]
+
+
+def yaw_pose(position: list[float] | np.ndarray, yaw: float) -> RigidTransform:
+    """A pose that is upright: a position [m] and a turn about z [rad]."""
+    return RigidTransform(RollPitchYaw(0, 0, yaw), np.asarray(position, dtype=float))
+
+
+def add_lio(plant: MultibodyPlant, robot: Robot) -> tuple[ModelInstanceIndex, RigidTransform]:
+    """Parse the Lio and weld its base; returns its model and X_WB."""
+    X_WB = yaw_pose(robot.position, np.deg2rad(robot.yaw_deg))
+    (lio,) = Parser(plant).AddModels(str(LIO_URDF))
+    plant.WeldFrames(plant.world_frame(), plant.GetFrameByName("lio_base", lio), X_WB)
+    return lio, X_WB
+
+
+def add_scene(*, plant: MultibodyPlant, scene_graph: SceneGraph, scenario: Scenario, seed: int) -> Scene:
+    """Add all that a scenario names to a plant that is registered with a scene graph and not yet finalized.
+
+    Raises:
+        InputError: a model does not exist, or the items do not fit where they may lie.
+    """
+    lio, X_WB = add_lio(plant, scenario.robot)
+    scene = Scene(scenario, lio, X_WB)
+    for k, thing in enumerate(scenario.things):
+        scene.things.setdefault(thing.name, []).append(_add_thing(plant, scenario, thing, k))
+    starts, scene.marks = draw_layout(scenario, seed)
+    for item, start in zip(scenario.items, starts, strict=True):
+        height, handle = _add_item(plant, scene_graph, scenario, item, start)
+        scene.rest_heights.append(height)
+        scene.items.append(handle)
+    for item, mark in zip(scenario.items, scene.marks, strict=True):
+        if mark is not None:
+            color = np.array([*MARK_COLORS.get(item.model, (0.3, 0.3, 0.3)), 1.0])
+            for name, radius, rgba in (("edge", MARK_RADIUS, color), ("field", 0.8 * MARK_RADIUS, PAPER)):
+                X = RigidTransform(mark.position + [0, 0, 0.0004 if name == "edge" else 0.0008])
+                disk = Cylinder(radius, 0.0008)
+                plant.RegisterVisualGeometry(plant.world_body(), X, disk, f"mark_{item.name}_{name}", rgba)
+    return scene
+
+
+PAPER = np.array([0.97, 0.96, 0.92, 1.0])
+
+
+def _add_thing(plant: MultibodyPlant, scenario: Scenario, thing: Thing, k: int) -> ModelInstanceIndex:
+    path = scenario.resolve(thing.model, MODELS / "world", ".sdf")
+    (model,) = Parser(plant, f"thing{k}").AddModels(str(path))
+    (body,) = plant.GetBodyIndices(model)
+    X = yaw_pose(thing.position, np.deg2rad(thing.yaw_deg))
+    plant.WeldFrames(plant.world_frame(), plant.get_body(body).body_frame(), X)
+    return model
+
+
+def _add_item(
+    plant: MultibodyPlant, scene_graph: SceneGraph, scenario: Scenario, item: Item, start: Spot
+) -> tuple[float, RigidItem | SoftItem]:
+    """Add one item where it starts; returns also the height of its origin above what it stands on."""
+    X = yaw_pose(start.position, start.yaw)
+    if item.kind == "soft":
+        shape = make_shape(item.model)
+        height = -float(shape.mesh.vertices[:, 2].min())
+        X.set_translation(start.position + [0, 0, height + DROP])
+        return height, add_soft_item(plant=plant, name=item.name, shape=shape, X_WP=X)
+    path = scenario.resolve(item.model, MODELS / "items", ".sdf")
+    (model,) = Parser(plant, f"item_{item.name}").AddModels(str(path))
+    (index,) = plant.GetBodyIndices(model)
+    body = plant.get_body(index)
+    inspector = scene_graph.model_inspector()
+    extents = [e for g in plant.GetCollisionGeometriesForBody(body) if (e := extent(inspector, g)) is not None]
+    height = -float(union_bounds(extents, RigidTransform(RotationMatrix()))[2])
+    X.set_translation(start.position + [0, 0, height + DROP])
+    plant.SetDefaultFloatingBaseBodyPose(body, X)
+    return height, RigidItem(item.name, body, extents)
+
+
+def check_overlaps(*, plant: MultibodyPlant, scene_graph: SceneGraph, context: object, scene: Scene) -> None:
+    """Refuse a scene in which one thing lies inside another.
+
+    Args:
+        plant: finalized.
+        scene_graph: of the same diagram.
+        context: of the diagram's scene graph, as it starts.
+        scene: what was added.
+
+    Raises:
+        InputError: names the two, and how deep.
+    """
+    query = scene_graph.get_query_output_port().Eval(context)
+    inspector = query.inspector()
+    solids: list[tuple[str, list[GeometryId]]] = [("lio", _geometries(plant, [scene.lio]))]
+    for name, models in scene.things.items():
+        solids += [(name, _geometries(plant, [model])) for model in models]
+    solids += [(i.name, list(plant.GetCollisionGeometriesForBody(i.body))) for i in scene.rigid_items]
+    boxes = {}
+    for _, geometries in solids:
+        for g in geometries:
+            shape = extent(inspector, g)
+            # An extent is in the body's frame.
+            X_WP = query.GetPoseInWorld(inspector.GetFrameId(g))
+            boxes[g] = None if shape is None else shape.bounds(X_WP.rotation().matrix(), X_WP.translation())
+    for i, (name_a, of_a) in enumerate(solids):
+        for name_b, of_b in solids[i + 1 :]:
+            depth = max((_depth(query, boxes, a, b) for a in of_a for b in of_b), default=0.0)
+            if depth > OVERLAP:
+                raise InputError(
+                    f"{name_b!r} lies {1e3 * depth:.0f} mm inside {name_a!r}; at most {1e3 * OVERLAP:.0f} mm is "
+                    "accepted: move one of them"
+                )
+
+
+def _geometries(plant: MultibodyPlant, models: list[ModelInstanceIndex]) -> list[GeometryId]:
+    bodies = [plant.get_body(b) for m in models for b in plant.GetBodyIndices(m)]
+    return [g for body in bodies for g in plant.GetCollisionGeometriesForBody(body)]
+
+
+def _depth(query: object, boxes: dict, a: GeometryId, b: GeometryId) -> float:
+    if boxes[a] is None or boxes[b] is None:
+        return 0.0
+    (low_a, high_a), (low_b, high_b) = boxes[a], boxes[b]
+    if np.any(low_a > high_b - OVERLAP) or np.any(low_b > high_a - OVERLAP):
+        return 0.0
+    return -query.ComputeSignedDistancePairClosestPoints(a, b).distance  # type: ignore[attr-defined]
+
+
+def role_count(scene_graph: SceneGraph) -> int:
+    """How many shapes take part in contact."""
+    return scene_graph.model_inspector().NumGeometriesWithRole(Role.kProximity)

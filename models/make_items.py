@@ -1,0 +1,173 @@
+"""Write the things to carry: apple, cup, cube, and clothes folded so tightly that they are rigid.
+
+Run `python -m models.make_items`. Origin in the middle, which is the centre of mass; long side along x, standing on -z.
+"""
+
+from __future__ import annotations
+
+from math import pi
+from pathlib import Path
+
+import numpy as np
+
+from models.mesh import Mesh, grid, lofted, merge, rounded, superellipse, turned, write_obj
+from models.sdf import Color, Link, Material, box, cylinder, ellipsoid, mesh, write_model
+
+HERE = Path(__file__).parent / "items"
+MESHES = HERE / "meshes"
+SCRIPT = "models/make_items.py"
+
+SKIN = Material(friction=0.7)
+CHINA = Material(friction=0.6)
+BEECH = Material(friction=0.6)
+COTTON = Material(friction=0.9, resolution=0.012)
+
+RED, LEAF, STALK = (0.83, 0.14, 0.13), (0.35, 0.60, 0.20), (0.38, 0.26, 0.15)
+TEAL, AMBER = (0.05, 0.55, 0.60), (0.95, 0.68, 0.18)
+CORAL, CREAM, NAVY = (0.91, 0.38, 0.33), (0.97, 0.94, 0.86), (0.13, 0.22, 0.45)
+MINT, MINT_DARK = (0.48, 0.76, 0.66), (0.25, 0.55, 0.47)
+
+APPLE = (0.038, 0.038, 0.036)
+"""Semi-axes [m]."""
+CUP_RADIUS, CUP_HEIGHT = 0.036, 0.090
+CUBE = 0.060
+SOCK = (0.062, 0.027, 0.024)
+"""Semi-axes of the bundle [m]."""
+SHIRT = (0.150, 0.070, 0.045)
+"""Edges of the folded shirt [m]."""
+TOWEL_RADIUS, TOWEL_LENGTH = 0.036, 0.180
+
+
+def item(name: str, mass: float, inertia: tuple[float, float, float], shape: str, material: Material,
+         parts: list[tuple[Mesh, Color]], turn: tuple[float, float, float] = (0, 0, 0)) -> None:  # fmt: skip
+    """Write a free body with one shape to touch, and meshes to see."""
+    link = Link(name, static=False, mass=mass, inertia=inertia)
+    link.collision(shape, material, (0, 0, 0), turn)
+    for k, (part, color) in enumerate(parts):
+        write_obj(MESHES / f"{name}_{k}.obj", part)
+        link.visual(mesh(f"meshes/{name}_{k}.obj"), color)
+    write_model(HERE / f"{name}.sdf", name, [link], SCRIPT)
+
+
+def ellipsoid_inertia(m: float, a: float, b: float, c: float) -> tuple[float, float, float]:
+    """Principal moments of a solid ellipsoid with semi-axes a, b, c."""
+    return m * (b * b + c * c) / 5, m * (a * a + c * c) / 5, m * (a * a + b * b) / 5
+
+
+def box_inertia(m: float, x: float, y: float, z: float) -> tuple[float, float, float]:
+    """Principal moments of a solid box with edges x, y, z."""
+    return m * (y * y + z * z) / 12, m * (x * x + z * z) / 12, m * (x * x + y * y) / 12
+
+
+def cylinder_inertia(m: float, r: float, h: float) -> tuple[float, float, float]:
+    """Principal moments of a solid cylinder along z."""
+    side = m * (3 * r * r + h * h) / 12
+    return side, side, m * r * r / 2
+
+
+def apple() -> None:
+    """An apple, with its dimples, a stalk and a leaf."""
+    a, _, c = APPLE
+    t = np.linspace(-pi / 2, pi / 2, 33)
+    radius = a * np.cos(t) ** 0.8
+    height = c * (np.sin(t) - 0.34 * np.exp(-((radius / 0.011) ** 2)) * np.sign(t)) + 0.0016 * np.cos(2 * t)
+    body = turned(np.stack([np.abs(radius), height], axis=1), sides=40)
+    stalk = turned([[0, 0.020], [0.002, 0.020], [0.0022, 0.046], [0, 0.046]], sides=8).moved((0.001, 0, 0))
+    s, w = np.meshgrid(np.linspace(0, 1, 9), np.linspace(-1, 1, 5), indexing="ij")
+    leaf = np.stack([0.028 * s, 0.009 * w * np.sin(pi * s), 0.036 + 0.014 * s - 0.012 * s * s + 0.002 * w * w], -1)
+    item("apple", 0.18, ellipsoid_inertia(0.18, *APPLE), ellipsoid(APPLE), SKIN,
+         [(body, RED), (stalk, STALK), (grid(leaf), LEAF)])  # fmt: skip
+
+
+def cup() -> None:
+    """A cup with a handle to look at; its walls are one solid to the touch."""
+    r, h = CUP_RADIUS, CUP_HEIGHT / 2
+    wall = [[0, -h], [0.030, -h], [r - 0.002, -h + 0.012], [r, h], [r - 0.003, h], [r - 0.005, -h + 0.014], [0, -h + 0.006]]
+    body = turned(rounded(wall, 0.004), sides=40)
+    bend = np.linspace(-0.45 * pi, 0.45 * pi, 15)
+    section = 2 * pi * np.arange(10) / 10
+    b, s = np.meshgrid(bend, section, indexing="ij")
+    reach = 0.026 + 0.004 * np.cos(s)
+    loop = np.stack([r - 0.006 + 0.8 * reach * np.cos(b), 0.0055 * np.sin(s), reach * np.sin(b)], axis=-1)
+    band = turned([[r + 0.0002, 0.010], [r + 0.0002, 0.022]], sides=40)
+    item("cup", 0.22, cylinder_inertia(0.22, r, 2 * h), cylinder(r, 2 * h), CHINA,
+         [(body, TEAL), (grid(loop, close_columns=True), TEAL), (band, CREAM)])  # fmt: skip
+
+
+def cube() -> None:
+    """A toy block with a round inlay on every side."""
+    e = CUBE / 2
+    heights = [-e, -e + 0.001, -e + 0.004, e - 0.004, e - 0.001, e]
+    shrink = [0.004, 0.0012, 0.0, 0.0, 0.0012, 0.004]
+    body = lofted([superellipse(e - s, e - s, 16.0) for s in shrink], [(0, 0, z) for z in heights])
+    disk = turned([[0, e], [0.018, e], [0.018, e + 0.0006], [0, e + 0.0006]], sides=32)
+    turn = {"x": np.array([[0, 0, 1], [0, 1, 0], [-1, 0, 0]]), "y": np.array([[1, 0, 0], [0, 0, 1], [0, -1, 0]])}
+    disks = [disk] + [disk.moved(rotation=turn[axis] * sign) for axis in "xy" for sign in (1, -1)]
+    item("cube", 0.25, box_inertia(0.25, CUBE, CUBE, CUBE), box((CUBE,) * 3), BEECH,
+         [(body, AMBER), (merge(*(d.outward() for d in disks)), CREAM)])  # fmt: skip
+
+
+def folds(a: float, b: float, z: float, layers: int) -> Mesh:
+    """A pile of folded layers: pillows on each other, within 2a × 2b × 2z."""
+    pile = []
+    for k in range(layers):
+        low, high = -z + 2 * z * k / layers, -z + 2 * z * (k + 1) / layers
+        tuck = 0.002 * (k % 2)
+        levels = [(0.008, low), (0.002, low + 0.002), (tuck, (low + high) / 2), (0.002, high - 0.002), (0.008, high)]
+        pile.append(lofted([superellipse(a - s, b - s, 7.0) for s, _ in levels], [(0, 0, h) for _, h in levels]))
+    return merge(*pile)
+
+
+def tshirt() -> None:
+    """A T-shirt, folded; a stripe runs across it."""
+    x, y, z = (e / 2 for e in SHIRT)
+    stripe = lofted([superellipse(0.016, y + 0.0008, 12.0)] * 2, [(0.02, 0, -z - 0.0008), (0.02, 0, z + 0.0008)])
+    item("tshirt", 0.18, box_inertia(0.18, *SHIRT), box(SHIRT), COTTON, [(folds(x, y, z, 4), CORAL), (stripe, CREAM)])
+
+
+def towel() -> None:
+    """A towel, rolled: the spiral shows at both ends."""
+    r, h = TOWEL_RADIUS, TOWEL_LENGTH / 2
+    skin = [[0, -h + 0.004], [r - 0.006, -h], [r, -h + 0.006], [r, h - 0.006], [r - 0.006, h], [0, h - 0.004]]
+    roll = turned(rounded(skin, 0.006), "x", 48)
+    t = np.linspace(0.6 * pi, 6 * pi, 120)
+    width = r * t / (6.4 * pi)
+    spirals = []
+    for sign in (-1, 1):
+        edge = np.stack([np.full_like(t, sign * (h + 0.0006)), width * np.cos(t), width * np.sin(t)], axis=1)
+        inner = edge * [1, 1, 1] - np.stack([0 * t, 0.0022 * np.cos(t), 0.0022 * np.sin(t)], axis=1)
+        spirals.append(grid(np.stack([edge, inner])))
+    bands = [turned([[r + 0.0004, p], [r + 0.0004, p + 0.010]], "x", 48) for p in (-0.065, -0.045, 0.035, 0.055)]
+    inertia = cylinder_inertia(0.30, r, 2 * h)[::-1]
+    item("towel", 0.30, inertia, cylinder(r, 2 * h), COTTON,
+         [(roll, MINT), (merge(*spirals), MINT_DARK), (merge(*bands), CREAM)], turn=(0, pi / 2, 0))  # fmt: skip
+
+
+def sock() -> None:
+    """A pair of socks, bundled: striped."""
+    a, b, c = SOCK
+    t = np.linspace(0, pi, 25)
+
+    def slice_(low: float, high: float, grow: float) -> Mesh:
+        part = t[(t >= low - 1e-9) & (t <= high + 1e-9)]
+        angle = 2 * pi * np.arange(32) / 32
+        p, s = np.meshgrid(part, angle, indexing="ij")
+        k = 1 + grow
+        return grid(
+            np.stack([-a * k * np.cos(p), b * k * np.sin(p) * np.cos(s), c * k * np.sin(p) * np.sin(s)], -1),
+            close_columns=True,
+        )
+
+    stripes = merge(*(slice_(t[i], t[i + 2], 0.012) for i in (4, 9, 14, 19)))
+    inertia = ellipsoid_inertia(0.06, a, b, c)
+    item("sock", 0.06, inertia, ellipsoid(SOCK), COTTON, [(slice_(0, pi, 0.0), NAVY), (stripes, CREAM)])
+
+
+def main() -> None:
+    """Write all of them."""
+    for make in (apple, cup, cube, tshirt, towel, sock):
+        make()
+
+
+if __name__ == "__main__":
+    main()
