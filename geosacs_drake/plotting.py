@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 from collections.abc import Sequence
 from pathlib import Path
+from typing import Any
 
 import matplotlib
 import numpy as np
@@ -50,14 +51,16 @@ def plot_canal(
     figure = Figure(figsize=(16, 7.5))
     curves = list(recorded) or list(canal.demonstrations)
     rims = rim_points(canal, _disks_to_draw(canal, _N_DISKS_DRAWN))
-    styled = [(rim, {"color": "black", "lw": 0.5, "alpha": 0.55, "zorder": 1}) for rim in rims]
+    styled: list[tuple[np.ndarray, dict[str, Any]]] = [
+        (rim, {"color": "black", "lw": 0.5, "alpha": 0.55, "zorder": 1}) for rim in rims
+    ]
     styled += [(curve, {"color": "red", "lw": 1.3, "zorder": 2}) for curve in curves]
     if path is not None:
         styled.append((path, {"color": "green", "lw": 1.8, "zorder": 3}))
     styled.append((canal.directrix, {"color": "blue", "ls": ":", "lw": 1.8, "zorder": 4}))
     styled += [(curve, {"color": "blue", "lw": 2.6, "zorder": 5}) for curve in corrections]
 
-    solid = figure.add_axes((0.0, 0.03, 0.5, 0.95), projection="3d", proj_type="ortho", computed_zorder=False)
+    solid: Any = figure.add_axes((0.0, 0.03, 0.5, 0.95), projection="3d", proj_type="ortho", computed_zorder=False)
     for curve, style in styled:
         solid.plot(*curve.T, **style)
     _equal_box(solid, np.concatenate([curve for curve, _ in styled]))
@@ -98,11 +101,11 @@ def plot_frames(output: str | os.PathLike, canal: CanalSurface) -> None:
     bishop = bishop_frames(canal.directrix, canal.tangents, canal.x_axes[0])
     correction = (canal.x_axes, canal.y_axes)
     figure = Figure(figsize=(15, 10))
-    top, bottom = figure.subfigures(2, 1, height_ratios=(2, 1))
+    top, bottom = np.asarray(figure.subfigures(2, 1, height_ratios=(2, 1)))
     disks = _disks_to_draw(canal, _N_FRAMES_DRAWN)
     size = 0.06 * max(0.3, float(np.ptp(canal.directrix, axis=0).max()))
     for k, (name, (x, y)) in enumerate((("Bishop frames", bishop), ("correction frames", correction))):
-        axes = top.add_axes((0.5 * k, 0.0, 0.5, 0.95), projection="3d", proj_type="ortho")
+        axes: Any = top.add_axes((0.5 * k, 0.0, 0.5, 0.95), projection="3d", proj_type="ortho")
         axes.plot(*canal.directrix.T, color="black", lw=0.8)
         points = canal.directrix[disks]
         for vectors, color in ((canal.tangents, "goldenrod"), (x, "red"), (y, "green")):

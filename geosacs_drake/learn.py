@@ -1,0 +1,162 @@
+"""`python -m geosacs_drake.learn`: demonstrations in, a canal out, and what a person wants to know about it."""
+
+from __future__ import annotations
+
+import webbrowser
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Annotated
+
+import numpy as np
+import tyro
+from tqdm import tqdm
+
+from canal.demonstration import load_demonstration
+from canal.errors import InputError
+from canal.learning import LearningOptions, learn_canal
+from canal.quality import CanalQuality, canal_quality
+from canal.refinement import SupportPlane
+from canal.surface import CanalSurface
+from geosacs_drake.command_line import ExitStatus, end, parse_options
+
+PROG = "geosacs_drake.learn"
+_N_STAGES = 4
+
+
+@dataclass(frozen=True)
+class LearnOptions:
+    """Learn a canal from two or more demonstrations, in any order, and say what it is like."""
+
+    demonstrations: tyro.conf.Positional[tuple[Path, ...]]
+    """Demonstrations (.npz or .csv), all from pick to place."""
+    output: Annotated[Path | None, tyro.conf.arg(aliases=["-o"])] = None
+    """Where to write the canal (.npz)."""
+    plot: Path | None = None
+    """Where to draw it (.png, .pdf, .svg); Bishop and correction frames go to NAME-frames beside it."""
+    html: Path | None = None
+    """Where to write it as a page to turn around in a browser."""
+    view: bool = False
+    """Show that page on localhost until Ctrl-C."""
+    port: int = 0
+    """Of the page; 0 for any that is free."""
+    margin: float = 0.0
+    """Added to every radius [m]."""
+    contain_raw: bool = False
+    """Widen radii until every recorded sample is inside."""
+    ellipse: bool = False
+    """Elliptic cross-sections, from three demonstrations on."""
+    interpolate: bool = False
+    """Splines through every h-th sample, as in the paper, instead of least squares."""
+    step: float = 0.1
+    """h, distance of the splines' knots, as a share of the whole."""
+    support_plane: Annotated[tuple[tuple[float, float, float, float], ...], tyro.conf.UseAppendAction] = ()
+    """NX NY NZ OFFSET: table, wall or door at n·p = offset [m], with the robot where n·p is larger. Repeatable."""
+    x_global: tuple[float, float, float] = (1.0, 0.0, 0.0)
+    """x_G, the direction that corrections along x follow."""
+
+
+def main(options: LearnOptions) -> ExitStatus:
+    """Learn, report, and write what was asked for.
+
+    Raises:
+        InputError: something that cannot be used.
+    """
+    if not options.demonstrations:
+        raise InputError("no demonstrations; give two or more files, .npz or .csv")
+    for ending, output in ((".npz", options.output), (".html", options.html)):
+        if output is not None and output.suffix != ending:
+            raise InputError(f"{output}: give a name that ends in {ending}")
+    demonstrations = [load_demonstration(path) for path in options.demonstrations]
+    learning = LearningOptions(
+        step=options.step,
+        interpolate=options.interpolate,
+        margin=options.margin,
+        contain_raw=options.contain_raw,
+        ellipse=options.ellipse,
+        x_global=options.x_global,
+        support_planes=tuple(SupportPlane((a, b, c), d) for a, b, c, d in options.support_plane),
+    )
+    with tqdm(total=_N_STAGES, desc="learning", delay=2.0, leave=False) as bar:
+
+        def progress(stage: str) -> None:
+            bar.set_description(stage)
+            bar.update()
+
+        canal = learn_canal(demonstrations, learning, progress)
+    print("\n".join(report(canal, canal_quality(canal))))
+    if options.output is not None:
+        canal.save(options.output)
+        print(f"canal written to {options.output}")
+    if options.plot is not None or options.html is not None or options.view:
+        _show(canal, [d.position for d in demonstrations], options)
+    return ExitStatus.DONE
+
+
+def report(canal: CanalSurface, quality: CanalQuality) -> list[str]:
+    """What a person wants to know about a canal, line by line."""
+    radii_mm, home = 1e3 * canal.radii, canal.home_disk
+    narrow, wide = int(np.argmin(radii_mm)), int(np.argmax(radii_mm))
+    x, y, z = canal.directrix[home]
+    spread = np.degrees(4 * np.arcsin(np.minimum(1.0, canal.orientation_sd / 2)))
+    weights, q = canal.orientation_weights, quality
+    spacing_mm = 1e3 * canal.length / (canal.n_disks - 1)
+    rows = [
+        ("demonstrations", f"{len(canal.demonstrations)}, {canal.moving_time_s:.1f} s of motion each on the mean"),
+        ("length", f"{canal.length:.3f} m, {canal.n_disks} disks every {spacing_mm:.1f} mm"),
+        ("radius", f"{radii_mm[narrow]:.0f} mm at disk {narrow} to {radii_mm[wide]:.0f} mm at disk {wide}"),
+        ("", f"pick {radii_mm[0]:.0f} mm, home {radii_mm[home]:.0f} mm, place {radii_mm[-1]:.0f} mm"),
+        ("home", f"disk {home} at ({x:.3f}, {y:.3f}, {z:.3f}) m"),
+        ("orientation", f"spread {spread.mean():.0f}° on the mean, {spread.max():.0f}° at disk {np.argmax(spread)}"),
+        ("", f"weight {weights.min():.2f} to {weights.max():.2f}"),
+        ("tilt of disks", f"at most {q.tilt_max:.1f}° against the path"),
+        ("neighbours", f"use at most {100 * q.crossing:.0f} % of their gap (they cross at 100)"),
+        ("correction x", f"{q.x_to_global_mean:.0f}° from x_G on the mean, {q.x_to_global_max:.0f}° at most"),
+        ("", f"turns at most {q.x_turn_max:.1f}° from disk to disk"),
+    ]
+    if canal.ellipses is not None:
+        a, b, _ = canal.ellipses.T
+        area = float(np.mean(a * b) / np.mean(canal.radii**2))
+        rows.append(("ellipses", f"{100 * area:.0f} % of the circles' area"))
+    return [f"{name:16}{text}" for name, text in rows] + [f"warning: {line}" for line in canal.warnings]
+
+
+def _show(canal: CanalSurface, recorded: Sequence[np.ndarray], options: LearnOptions) -> None:
+    """Pictures and the page, with a tour of the canal by a scripted thumb."""
+    from canal.tour import tour
+
+    travelled = tour(canal)
+    if options.plot is not None:
+        from geosacs_drake.plotting import frames_path, plot_canal, plot_frames
+
+        plot_canal(
+            options.plot,
+            canal,
+            recorded=recorded,
+            path=travelled.position,
+            corrections=travelled.corrections,
+            title="Canal, with a tour by a scripted thumb",
+        )
+        plot_frames(frames_path(options.plot), canal)
+        print(f"pictures drawn to {options.plot} and {frames_path(options.plot)}")
+    if options.html is None and not options.view:
+        return
+    from geosacs_drake.canal_html import canal_page, serve, write_html
+
+    page = canal_page(canal, recorded=recorded, path=travelled.position, corrections=travelled.corrections)
+    if options.html is not None:
+        write_html(options.html, page)
+        print(f"page written to {options.html}")
+    if options.view:
+        with serve(page, options.port) as server:
+            address = f"http://127.0.0.1:{server.server_address[1]}/"
+            print(f"the canal is shown at {address} (Ctrl-C ends)", flush=True)
+            webbrowser.open(address)
+            try:
+                server.serve_forever()
+            except KeyboardInterrupt:
+                print()
+
+
+if __name__ == "__main__":
+    end(lambda: main(parse_options(LearnOptions, PROG)), PROG)
