@@ -7,10 +7,10 @@ from scipy.linalg import solveh_banded
 
 ROOM = 0.9  # share of the gap between neighbours that a tilt may use up
 MAX_TILT = np.radians(30.0)  # [rad] beyond this a disk is no cross-section any more
-_TARGET = 0.85  # aimed at, so that rounding does not cross ROOM
-_STIFFEN = 2.0
-_MAX_ROUNDS = 60
-_HELD = 1e7  # weight of a disk that is held, against 1 for one that follows its tangent
+_TARGET = 0.86  # aimed at; ascent ends when all are below ROOM
+_FIRST, _STIFFEST = 0.05, 1e7  # multipliers of |n_{s+1} - n_s|², against 1 of |n_s - e_T|²
+_MAX_ROUNDS = 300
+_HELD = 1e9  # weight of a disk that is held, against 1 for one that follows its tangent
 
 
 def crossings(points: np.ndarray, normals: np.ndarray, radii: np.ndarray) -> np.ndarray:
@@ -42,8 +42,8 @@ def relax_normals(
 ) -> np.ndarray:
     """Tilt disks as little and as locally as it takes for neighbours not to cross.
 
-    Minimises Σ |n_s - e_T(s)|² + Σ k_s |n_{s+1} - n_s|², where k_s starts at zero and is raised only where
-    neighbours still cross. Centres and radii stay as they are.
+    Minimises Σ |n_s - e_T(s)|² under a bound on each |n_{s+1} - n_s|, by ascent on the bounds' multipliers: only
+    links that would cross get one. Centres and radii stay as they are.
 
     Args:
         points: centres, [m]. Shape (N, 3).
@@ -68,15 +68,11 @@ def relax_normals(
         excess = float(np.sum(np.maximum(share - ROOM, 0.0)))
         if excess < least:
             best, least = normals, excess
-        bad = share > (_TARGET if excess > 0 else ROOM)
-        if not bad.any():
+        if excess == 0.0:
             break
-        # Stiffening the neighbours too spreads a bend instead of pushing it to the next link.
-        near = bad.copy()
-        near[1:] |= bad[:-1]
-        near[:-1] |= bad[1:]
-        stiffness = np.where(near, np.maximum(_STIFFEN * stiffness, 0.5), stiffness)
-        stiffness = np.minimum(stiffness, 1e6)
+        # Multiplicative ascent on the multipliers: a link that uses less than its room is let go again.
+        pulled = np.where(share > _TARGET, np.maximum(stiffness, _FIRST), stiffness)
+        stiffness = np.minimum(pulled * np.clip(share / _TARGET, 0.5, 4.0), _STIFFEST)
         banded = np.zeros((2, len(wanted)))
         banded[1] = weight
         banded[1, :-1] += stiffness
