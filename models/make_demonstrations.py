@@ -1,0 +1,200 @@
+"""Make the demonstrations that ship: two a task, moved as a person's hand moves.
+
+Run `python -m models.make_demonstrations`. Each is a path through keyframes of the TCP in the base frame B, with what
+recordings of real hands have: pauses at both ends and on the way, tremor, noise, repeated samples, isolated long steps,
+a hesitation that goes back, and a disagreement between the two that is large where the task leaves freedom and small
+where it does not (the door).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import numpy as np
+from scipy.interpolate import CubicSpline, PchipInterpolator
+from scipy.ndimage import gaussian_filter1d
+from scipy.spatial.transform import Rotation
+
+HERE = Path(__file__).parent / "demonstrations"
+RATE = 20.0
+"""Of recordings [Hz]."""
+FORWARD = np.diag([1.0, -1.0, -1.0])
+"""R_BT of a gripper that points along +x_B: x_T forward, the fingers open along y_T, z_T down."""
+
+
+@dataclass(frozen=True)
+class Key:
+    """A keyframe, common to both hands, and how far they part there."""
+
+    position: tuple[float, float, float]
+    """p_BT [m]."""
+    heading: float
+    """Direction of the gripper about z_B [deg], 0 along +x."""
+    pitch: float
+    """How far the gripper points down [deg]; 90 is straight down."""
+    spread: float
+    """Each hand's distance from the middle, along `aside` [m]."""
+    turn: float
+    """Each hand's turn about the vertical [deg], one way and the other."""
+    calm: float = 1.0
+    """Share of the tremor that is left."""
+
+
+@dataclass(frozen=True)
+class Task:
+    """Keyframes from pick to place, and the direction in which the hands part, at pick and at place."""
+
+    name: str
+    keys: Sequence[Key]
+    aside: tuple[tuple[float, float, float], tuple[float, float, float]]
+    moving_time: float = 20.0
+    """Of a pass, pauses apart [s]: three things are then home-pick-home-place-home in 2 min, as in the paper."""
+
+
+@dataclass(frozen=True)
+class Hand:
+    """One person's way of moving."""
+
+    side: float
+    """+1 or -1: which way it parts from the middle."""
+    seed: int
+    pause: tuple[float, float] = (2.5, 3.5)
+    """Before and after the motion [s]."""
+    rests: Sequence[tuple[float, float]] = field(default_factory=tuple)
+    """Pauses on the way: share of the path, duration [s]."""
+    hesitation: float = 0.5
+    """Share of the path where the hand goes back a little, before it goes on."""
+    tempo: float = 1.0
+    tremor: float = 0.004
+    """Standard deviation of the slow tremor [m]."""
+
+
+LAUNDRY = Task(
+    "laundry",
+    [
+        Key((0.450, 0.00, 0.342), 0, 90, 0.140, 9, 0.15),
+        Key((0.450, 0.00, 0.440), 0, 90, 0.138, 9, 0.3),
+        Key((0.448, 0.00, 0.560), 0, 88, 0.110, 10, 0.6),
+        Key((0.425, 0.00, 0.700), 0, 76, 0.070, 12),
+        Key((0.365, 0.00, 0.850), 0, 48, 0.040, 12),
+        Key((0.280, 0.02, 0.980), 8, 22, 0.022, 10),
+        Key((0.225, 0.10, 1.030), 30, 12, 0.012, 8),
+        Key((0.170, 0.26, 1.000), 58, 14, 0.030, 8),
+        Key((0.095, 0.46, 0.850), 78, 26, 0.035, 6),
+        Key((0.030, 0.63, 0.670), 88, 22, 0.020, 3, 0.5),
+        Key((0.004, 0.74, 0.578), 90, 9, 0.012, 2, 0.25),
+        Key((0.000, 0.82, 0.553), 90, 2, 0.012, 1.5, 0.15),
+        Key((0.000, 0.90, 0.550), 90, 0, 0.022, 1.5, 0.15),
+        Key((0.000, 0.97, 0.550), 90, 0, 0.040, 1.5, 0.15),
+    ],
+    aside=((0.0, 1.0, 0.0), (0.8, 0.0, 0.6)),
+)
+
+RELOCATION = Task(
+    "relocation",
+    [
+        Key((0.265, -0.48, 0.462), -61, 90, 0.140, 10, 0.15),
+        Key((0.265, -0.48, 0.560), -61, 90, 0.138, 10, 0.3),
+        Key((0.270, -0.47, 0.680), -60, 86, 0.110, 11, 0.6),
+        Key((0.300, -0.40, 0.790), -50, 72, 0.070, 12),
+        Key((0.355, -0.25, 0.870), -33, 55, 0.040, 10),
+        Key((0.395, -0.05, 0.895), -8, 48, 0.015, 8),
+        Key((0.385, 0.12, 0.890), 16, 50, 0.020, 8),
+        Key((0.320, 0.29, 0.860), 42, 58, 0.045, 10),
+        Key((0.245, 0.42, 0.780), 60, 74, 0.075, 10),
+        Key((0.220, 0.47, 0.680), 65, 87, 0.110, 9, 0.6),
+        Key((0.215, 0.48, 0.560), 66, 90, 0.135, 8, 0.3),
+        Key((0.215, 0.48, 0.462), 66, 90, 0.138, 8, 0.15),
+    ],
+    aside=((0.88, 0.48, 0.0), (0.91, -0.41, 0.0)),
+)
+
+HANDS = (
+    Hand(+1.0, 11, (2.6, 3.8), ((0.34, 2.2),), hesitation=0.56, tempo=0.94),
+    Hand(-1.0, 23, (3.4, 2.3), ((0.61, 2.8),), hesitation=0.44, tempo=1.06),
+)
+
+
+def orientation(heading: np.ndarray, pitch: np.ndarray) -> Rotation:
+    """R_BT for headings and pitches [deg] of shape (n,)."""
+    return Rotation.from_euler("ZY", np.stack([heading, pitch], axis=1), degrees=True) * Rotation.from_matrix(FORWARD)
+
+
+def progress(hand: Hand, moving_time: float, rng: np.random.Generator) -> np.ndarray:
+    """Share of the path at each sample: slow start and end, rests, a hesitation. Shape (N,)."""
+    moving = int(moving_time * hand.tempo * RATE)
+    t = np.linspace(0, 1, moving)
+    # Never still on the way, gentle at the ends.
+    speed = (0.25 + np.minimum(1.0, 6.0 * np.minimum(t, 1 - t))) * (1 + 0.25 * np.sin(2 * np.pi * (2.3 * t + rng.random())))
+    s = np.cumsum(speed)
+    s = (s - s[0]) / (s[-1] - s[0])
+    # A hand that goes back by 8 mm of path, and on again.
+    s = s - 0.012 * np.exp(-(((t - hand.hesitation) / 0.012) ** 2))
+    parts, last = [np.full(int(hand.pause[0] * RATE), s[0])], 0
+    for share, seconds in hand.rests:
+        stop = int(np.searchsorted(s, share))
+        parts += [s[last:stop], np.full(int(seconds * RATE), s[stop])]
+        last = stop
+    return np.concatenate([*parts, s[last:], np.full(int(hand.pause[1] * RATE), s[-1])])
+
+
+def tremor(rng: np.random.Generator, n: int, columns: int) -> np.ndarray:
+    """Slow, smooth wandering of unit standard deviation. Shape (n, columns)."""
+    wander = gaussian_filter1d(rng.normal(size=(n + 200, columns)), 9.0, axis=0)[100:-100]
+    return wander / wander.std(axis=0)
+
+
+def demonstrate(task: Task, hand: Hand) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """One demonstration: position (N, 3) [m], quaternion w x y z (N, 4), time (N,) [s]."""
+    rng = np.random.default_rng(hand.seed)
+    keys = task.keys
+    points = np.array([k.position for k in keys])
+    knots = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(points, axis=0), axis=1))])
+    knots /= knots[-1]
+    s = progress(hand, task.moving_time, rng)
+    n = len(s)
+
+    def along(values: Sequence[float]) -> np.ndarray:
+        return PchipInterpolator(knots, values)(np.clip(s, 0, 1))
+
+    blend = along(np.linspace(0, 1, len(keys)).tolist())[:, None]
+    aside = (1 - blend) * task.aside[0] + blend * task.aside[1]
+    aside /= np.linalg.norm(aside, axis=1, keepdims=True)
+    # A hand at rest does not tremble as one that moves.
+    moving = gaussian_filter1d((np.abs(np.gradient(s)) > 1e-5).astype(float), 5.0)[:, None]
+    calm = along([k.calm for k in keys])[:, None] * (0.1 + 0.9 * moving)
+    position = CubicSpline(knots, points)(np.clip(s, 0, 1))
+    position += hand.side * along([k.spread for k in keys])[:, None] * aside
+    position += hand.tremor * calm * tremor(rng, n, 3)
+    turn = hand.side * along([k.turn for k in keys])
+    R = orientation(along([k.heading for k in keys]) + turn, along([k.pitch for k in keys]))
+    R = R * Rotation.from_rotvec(np.deg2rad(1.5) * calm * tremor(rng, n, 3))
+    quaternion = R.as_quat()[:, [3, 0, 1, 2]]
+
+    # Isolated long steps: frames that were dropped. Then samples that repeat the one before.
+    kept = np.ones(n, dtype=bool)
+    for start in rng.choice(np.arange(80, n - 80), 6, replace=False):
+        kept[start : start + rng.integers(2, 5)] = False
+    position, quaternion = position[kept], quaternion[kept]
+    position += rng.normal(0, 1e-4, position.shape)
+    for i in np.flatnonzero(rng.random(len(position)) < 0.05):
+        if i > 0:
+            position[i], quaternion[i] = position[i - 1], quaternion[i - 1]
+    return position, quaternion, np.arange(len(position)) / RATE
+
+
+def main() -> None:
+    """Write all four."""
+    HERE.mkdir(exist_ok=True)
+    for task in (LAUNDRY, RELOCATION):
+        for k, hand in enumerate(HANDS, start=1):
+            position, quaternion, time = demonstrate(task, hand)
+            path, temporary = HERE / f"{task.name}_{k}.npz", HERE / f"{task.name}_{k}.tmp.npz"
+            np.savez_compressed(temporary, position=position, orientation=quaternion, time=time)
+            temporary.replace(path)
+
+
+if __name__ == "__main__":
+    main()
