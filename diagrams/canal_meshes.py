@@ -97,7 +97,7 @@ def disc(segments: int = 64) -> TriangleMesh:
     return TriangleMesh(np.vstack([rim, np.zeros(3)]).T.copy(), faces.astype(np.int32))
 
 
-def arrow(shaft: float = 0.03, head: float = 0.09, head_length: float = 0.3, sides: int = 16) -> TriangleMesh:
+def arrow(shaft: float = 0.035, head: float = 0.1, head_length: float = 0.3, sides: int = 16) -> TriangleMesh:
     """An arrow of length 1 along z; radii of `shaft` and `head` relative to that 1."""
     neck = 1 - head_length
     profile = np.array([[0, 0], [shaft, 0], [shaft, neck], [head, neck], [0, 1.0]])

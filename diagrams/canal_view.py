@@ -28,7 +28,7 @@ DISK_FACE = Rgba(1.0, 0.72, 0.20, 0.28)
 AXIS_X = Rgba(0.86, 0.12, 0.14, 1.0)
 AXIS_Y = Rgba(0.10, 0.62, 0.22, 1.0)
 POINT = Rgba(1.0, 0.35, 0.05, 1.0)
-AHEAD = Rgba(0.98, 0.55, 0.12, 1.0)
+AHEAD = Rgba(1.0, 0.60, 0.05, 1.0)
 """Colours: the canal cool, what moves on it warm, the axes as everywhere red and green."""
 
 BEAD_SPACING = 0.02
@@ -113,8 +113,13 @@ class CanalView(LeafSystem):
     def _mesh(self, path: str, mesh: TriangleMesh, rgba: Rgba) -> None:
         path = f"{self._path}/{path}"
         self._meshcat.SetTriangleMesh(path, mesh.vertices, mesh.faces, rgba)
+        self._cast_no_shadow(path)
         if rgba.a() < 1:
             self._see_through(path)
+
+    def _cast_no_shadow(self, path: str) -> None:
+        # What is drawn into the room for explanation is not in it.
+        self._meshcat.SetProperty(f"{path}/<object>", "castShadow", False)
 
     def _see_through(self, path: str) -> None:
         # Else a translucent face hides the translucent ones behind it.
@@ -134,16 +139,18 @@ class CanalView(LeafSystem):
             meshcat.SetProperty(f"{path}/surface/<object>", "opacity", 2.5 * SURFACE.a())
             self._see_through(f"{path}/surface")
         self._mesh("rings", meshes.canal_rings(canal, disks[::4], 0.0008), RINGS)
-        self._mesh("directrix", meshes.dashes(canal.directrix, 0.002, 0.012, 0.010), DIRECTRIX)
+        self._mesh("directrix", meshes.dashes(canal.directrix, 0.0025, 0.014, 0.010), DIRECTRIX)
         lines = [meshes.tube(demonstration[disks], 0.001, 4) for demonstration in canal.demonstrations]
         self._mesh("demonstrations", meshes.merge(lines), DEMONSTRATIONS)
-        self._mesh("disk/size/ring", meshes.ring(0.03), DISK)
+        self._mesh("disk/size/ring", meshes.ring(0.04), DISK)
         self._mesh("disk/size/face", meshes.disc(), DISK_FACE)
         self._mesh("x/size/arrow", meshes.arrow(), AXIS_X)
         self._mesh("y/size/arrow", meshes.arrow(), AXIS_Y)
-        meshcat.SetObject(f"{path}/point", Sphere(0.011), POINT)
+        meshcat.SetObject(f"{path}/point", Sphere(0.013), POINT)
+        self._cast_no_shadow(f"{path}/point")
         for k in range(len(self._beads)):
-            meshcat.SetObject(self._bead(int(k)), Sphere(0.0035), AHEAD)
+            meshcat.SetObject(self._bead(int(k)), Sphere(0.005), AHEAD)
+            self._cast_no_shadow(self._bead(k))
             meshcat.SetProperty(self._bead(int(k)), "visible", False, context.get_time())
         discrete.set_value(self._key, np.full(KEY_SIZE, np.nan))
         discrete.set_value(self._visible, np.zeros(len(self._beads)))
@@ -176,7 +183,7 @@ class CanalView(LeafSystem):
         size = [max(a, 1e-3), max(b, 1e-3), max(0.5 * (a + b), 1e-3)]
         meshcat.SetProperty(f"{path}/disk/size", "scale", size, time)
         p = canal.point(state.disk, state.eta, state.phi)
-        length = min(max(1.3 * radius, 0.05), 0.12)
+        length = min(max(1.4 * radius, 0.08), 0.15)
         for name, axis, other in (("x", x, y), ("y", y, x)):
             R_BA = RotationMatrix(np.column_stack([np.cross(other, axis), other, axis]))
             meshcat.SetTransform(f"{path}/{name}", RigidTransform(R_BA, p), time)

@@ -8,30 +8,55 @@ from collections.abc import Sequence
 from typing import NoReturn
 
 import numpy as np
-from pydrake.geometry import Meshcat, MeshcatParams
+from pydrake.geometry import Cylinder, Meshcat, MeshcatParams, Rgba
+from pydrake.math import RigidTransform
 
 from canal.errors import InputError
 
-CAMERA = (2.1, -1.3, 1.75)
-"""[m] Where the eye stands, in the world: in front of the robot, to its right, at a standing person's height."""
-TARGET = (0.1, 0.25, 0.6)
+CAMERA = (2.7, -1.7, 2.0)
+"""[m] Where the eye stands, in the world: in front of the robot, to its right, taller than the machine."""
+TARGET = (0.05, 0.25, 0.62)
 """[m] What the eye looks at, in the world: the middle of the work space."""
+FIELD_OF_VIEW = 40.0
+"""[deg] Vertical; Meshcat's own 75° bends what stands at the edge."""
 
 LOWEST_PORT, HIGHEST_PORT = 1024, 65535
 """Ports that a program without privileges may take."""
 
+LAMP = "/Lights/SpotLight/<object>"
 LOOK: tuple[tuple[str, str, bool | float | list[float]], ...] = (
-    # A light, warm room: pale shells stand out against its lower half, the translucent canal against its upper.
+    # A light room with a floor: white shells and the translucent canal both stand out against it.
     ("/Background/<object>", "top_color", [0.72, 0.80, 0.88]),
     ("/Background/<object>", "bottom_color", [0.95, 0.95, 0.94]),
     ("/Grid", "visible", False),
     ("/Axes", "visible", False),
-    ("/Lights/AmbientLight/<object>", "intensity", 0.9),
-    ("/Lights/FillLight/<object>", "intensity", 0.6),
-    ("/Lights/PointLightNegativeX/<object>", "intensity", 12.0),
-    ("/Lights/PointLightPositiveX/<object>", "intensity", 9.0),
+    # One lamp over the eye's shoulder casts the shadows that show heights; the others only fill.
+    ("/Lights/SpotLight", "visible", True),
+    (LAMP, "position", [1.2, -1.5, 3.2]),
+    (LAMP, "intensity", 5.5),
+    (LAMP, "decay", 1.0),
+    (LAMP, "angle", 0.85),
+    (LAMP, "penumbra", 0.6),
+    (LAMP, "castShadow", True),
+    (LAMP, "shadow.mapSize.x", 2048.0),
+    (LAMP, "shadow.mapSize.y", 2048.0),
+    (LAMP, "shadow.radius", 4.0),
+    (LAMP, "shadow.bias", -0.0005),
+    (LAMP, "shadow.normalBias", 0.01),
+    ("/Lights/AmbientLight/<object>", "intensity", 1.0),
+    ("/Lights/FillLight/<object>", "intensity", 0.8),
+    ("/Lights/FillLight/<object>", "position", [-4.0, -6.0, 8.0]),
+    ("/Lights/PointLightNegativeX/<object>", "intensity", 3.0),
+    ("/Lights/PointLightPositiveX/<object>", "intensity", 3.0),
 )
 """Part of the page, its property, the value."""
+
+
+FLOOR_PATH = "/drake/floor"
+FLOOR = Rgba(0.87, 0.85, 0.81, 1.0)
+FLOOR_RADIUS = 6.0
+FLOOR_DEPTH = 0.001
+"""[m] The floor that is seen lies this far below z = 0, so that it does not flicker with what stands on it."""
 
 
 def start_meshcat(
@@ -70,6 +95,9 @@ def start_meshcat(
         which = "every port in 7000..7999 on localhost is" if port is None else f"port {port} on localhost is"
         remedy = "give a free one with --port, or end the program that listens there"
         raise InputError(f"{which} taken: {remedy}") from error
+    meshcat.SetObject(FLOOR_PATH, Cylinder(FLOOR_RADIUS, 2 * FLOOR_DEPTH), FLOOR)
+    meshcat.SetTransform(FLOOR_PATH, RigidTransform([0.0, 0.0, -2 * FLOOR_DEPTH]))
+    meshcat.SetCamera(Meshcat.PerspectiveCamera(fov=FIELD_OF_VIEW, aspect=1.6))
     meshcat.SetCameraPose(np.asarray(camera, dtype=float), np.asarray(target, dtype=float))
     return meshcat
 

@@ -21,8 +21,10 @@ STEP = 0.005
 POINTS = 24
 """In a piece of the trail; only the newest piece is ever sent again."""
 PIECES = 32
-"""That are kept (at most 3.7 m); the next one replaces the oldest."""
-RADIUS = 0.0025
+"""That are seen (at most 3.7 m); the next one hides the oldest."""
+PATHS = 1000
+"""Pieces that the page keeps, seen or hidden; in a recording these many have their time."""
+RADIUS = 0.0035
 """[m] Of the trail."""
 
 
@@ -101,10 +103,16 @@ class TrailView(LeafSystem):
         return EventStatus.Succeeded()
 
     def _draw(self, begun: int, points: np.ndarray, rgba: Rgba, time: float) -> None:
-        path = f"{self._path}/{begun % PIECES:03d}"
+        path = self._piece_path(begun)
         mesh = tube(points, RADIUS)
         self._meshcat.SetTriangleMesh(path, mesh.vertices, mesh.faces, rgba)
+        self._meshcat.SetProperty(f"{path}/<object>", "castShadow", False)
         if len(points) == 2:
-            # A recording keeps the last mesh of a path from its first frame on: show it from when it was begun.
+            # A recording knows a path's last mesh from its first frame on: show it from when it was begun.
             self._meshcat.SetProperty(path, "visible", False, 0.0)
             self._meshcat.SetProperty(path, "visible", True, time)
+            if begun > PIECES:
+                self._meshcat.SetProperty(self._piece_path(begun - PIECES), "visible", False, time)
+
+    def _piece_path(self, begun: int) -> str:
+        return f"{self._path}/{begun % PATHS:03d}"

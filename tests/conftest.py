@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import shutil
-import time
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import pytest
+from waiting import wait_until
 
 if TYPE_CHECKING:
     from playwright.sync_api import Browser, Page
@@ -35,8 +35,8 @@ def chromium() -> Iterator[Browser]:
 
 @pytest.fixture
 def page(chromium: Browser) -> Iterator[Page]:
-    """An empty page of 1280 × 800 that fails the test when a script in it fails."""
-    page = chromium.new_page(viewport={"width": 1280, "height": 800})
+    """An empty page, small for speed, that fails the test when a script in it fails."""
+    page = chromium.new_page(viewport={"width": 640, "height": 400})
     errors: list[str] = []
     page.on("pageerror", lambda error: errors.append(str(error)))
     yield page
@@ -50,15 +50,6 @@ def meshcat() -> Meshcat:
     from diagrams.meshcat_server import start_meshcat
 
     return start_meshcat(port=0)
-
-
-def wait_until(condition: Callable[[], bool], what: str, limit_s: float = 30.0) -> None:
-    """Wait for `condition`; the limit only ends a test that hangs."""
-    end = time.monotonic() + limit_s
-    while not condition():
-        if time.monotonic() > end:
-            pytest.fail(f"waited {limit_s} s for {what}")
-        time.sleep(0.02)
 
 
 @pytest.fixture
