@@ -52,8 +52,9 @@ def relax_normals(
         held: disks whose normal is given (at a support plane), by index.
 
     Returns:
-        Unit normals, sign-continuous. Shape (N, 3). Neighbours that still cross lie in a hairpin tighter
-        than the radius, which no tilt cures; see `crossings`.
+        Unit normals, sign-continuous, within 30° of the tangents (a disk that is held may lie further). Shape
+        (N, 3). Neighbours that still cross lie in a hairpin tighter than the radius, which no tilt cures; see
+        `crossings`.
     """
     wanted = continuous_directions(tangents)
     weight = np.ones(len(wanted))
@@ -81,7 +82,19 @@ def relax_normals(
         relaxed = solveh_banded(banded, weight[:, None] * wanted)
         size = np.linalg.norm(relaxed, axis=1, keepdims=True)
         normals = np.where(size > 1e-9, relaxed / np.maximum(size, 1e-9), wanted)
-    return best
+    # What is left is a hairpin: tilted on, its disks would lie along the path, and cross all the same.
+    limit = max([MAX_TILT, *(tilts(wanted[[s]], tangents[[s]])[0] for s in (held or {}))])
+    return _within(best, continuous_directions(tangents), limit)
+
+
+def _within(normals: np.ndarray, centres: np.ndarray, limit: float) -> np.ndarray:
+    """Unit vectors moved, along the sphere, to within an angle of others. Shape (N, 3)."""
+    across = normals - np.sum(normals * centres, axis=1)[:, None] * centres
+    size = np.linalg.norm(across, axis=1)
+    angle = np.arctan2(size, np.sum(normals * centres, axis=1))
+    far = angle > limit
+    edge = np.cos(limit) * centres + np.sin(limit) * across / np.maximum(size, 1e-12)[:, None]
+    return np.where(far[:, None], edge, normals)
 
 
 def tilts(normals: np.ndarray, tangents: np.ndarray) -> np.ndarray:
