@@ -183,6 +183,9 @@ class OperatorPolicy:
         state, verdicts, tries = OperatorState.unpack(vector, len(self.goals))
         if time < state.busy_until - EPSILON:
             return vector
+        if sight.navigation.blocked:  # the arm has stopped against something: the way back is free
+            self._press(state, Button.REVERSE, time)
+            return state.pack(verdicts, tries)
         {
             Mode.BEGIN: self._begin,
             Mode.PICK: self._pick,

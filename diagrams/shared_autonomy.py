@@ -1,0 +1,176 @@
+"""The whole: joystick → navigator → IK → Lio station → monitor, wired into one Drake diagram."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+from pydrake.geometry import Meshcat, MeshcatVisualizer, MeshcatVisualizerParams
+from pydrake.systems.framework import Diagram, DiagramBuilder
+
+from canal.surface import CanalSurface
+from diagrams.canal_view import CanalView
+from diagrams.ik_solver import IkSolver
+from diagrams.ik_system import OrientationWeightedIk
+from diagrams.joystick import JoystickSelector, RecordedJoystick
+from diagrams.joystick_recording import JoystickRecording
+from diagrams.lio_arm import TCP_FRAME, make_arm_plant
+from diagrams.lio_station import START_POSTURE, LioStation
+from diagrams.meshcat_joystick import MeshcatJoystick
+from diagrams.monitor import Monitor
+from diagrams.navigator import CanalNavigator
+from diagrams.operator import SimulatedOperator
+from diagrams.run_log import RunLog
+from diagrams.scenario import Scenario
+from diagrams.soft_view import SoftView
+
+
+@dataclass(frozen=True)
+class SharedAutonomy:
+    """The diagram of a run, and the systems in it that a run asks about."""
+
+    diagram: Diagram
+    station: LioStation
+    navigator: CanalNavigator
+    ik: OrientationWeightedIk
+    monitor: Monitor
+    selector: JoystickSelector
+    log: RunLog
+    q_start: np.ndarray
+
+
+def build_shared_autonomy(
+    *,
+    scenario: Scenario,
+    canal: CanalSurface,
+    operator: Literal["simulated", "person"] | JoystickRecording = "simulated",
+    seed: int = 0,
+    meshcat: Meshcat | None = None,
+    recording: bool = False,
+) -> SharedAutonomy:
+    """Wire a scenario and a canal into a diagram.
+
+    ```
+    joystick sources → selector → canal navigator → orientation-weighted IK → Lio station → monitor
+                          ↑ simulated operator ←─────────────────────────────────┘    → Meshcat
+    ```
+
+    Args:
+        scenario: task, things, options.
+        canal: to travel, in the robot's base frame.
+        operator: who holds the joystick until a person in the Meshcat page touches it.
+        seed: of where the things lie and of the simulated operator's errors.
+        meshcat: where to show it; None for no pictures.
+        recording: whether Meshcat's animation is being recorded.
+
+    Raises:
+        InputError: the scenario's things overlap, or the arm cannot reach the canal's home.
+    """
+    period = 1.0 / scenario.control_rate_hz
+    builder = DiagramBuilder()
+
+    solver = IkSolver(make_arm_plant(), TCP_FRAME, scenario.ik)
+    q_start = start_posture(solver, canal)
+    station = LioStation.AddToBuilder(builder=builder, scenario=scenario, seed=seed, q0=q_start)
+    navigator = CanalNavigator.AddToBuilder(builder=builder, canal=canal, options=scenario.navigation, period=period)
+    ik = builder.AddNamedSystem("ik", OrientationWeightedIk(solver, q_start=q_start, period=period))
+    monitor = Monitor.AddToBuilder(
+        builder=builder,
+        canal=canal,
+        goals=station.goals,
+        contact_pairs=len(station.contact_pairs),
+        X_WB=station.X_WB,
+        options=scenario.monitor,
+        period=period,
+    )
+
+    person = None if meshcat is None else MeshcatJoystick.AddToBuilder(builder=builder, meshcat=meshcat)
+    if operator == "simulated":
+        source = SimulatedOperator.AddToBuilder(
+            builder=builder,
+            canal=canal,
+            goals=station.goals,
+            X_WB=station.X_WB,
+            options=scenario.operator,
+            navigation=scenario.navigation,
+            seed=seed,
+        )
+        for port in ("item_poses", "item_bounds", "X_BT"):
+            builder.Connect(station.GetOutputPort(port), source.GetInputPort(port))
+        builder.Connect(navigator.GetOutputPort("navigation_state"), source.GetInputPort("navigation_state"))
+    elif operator == "person":
+        source = None
+    else:
+        source = RecordedJoystick.AddToBuilder(builder=builder, recording=operator)
+    selector = JoystickSelector.AddToBuilder(
+        builder=builder,
+        person=None if person is None else person.GetOutputPort("joystick"),
+        simulated=None if source is None else source.GetOutputPort("joystick"),
+    )
+
+    builder.Connect(selector.GetOutputPort("joystick"), navigator.GetInputPort("joystick"))
+    builder.Connect(station.GetOutputPort("gripper_state"), navigator.GetInputPort("gripper_state"))
+    builder.Connect(monitor.GetOutputPort("alarm"), navigator.GetInputPort("alarm"))
+    builder.Connect(navigator.GetOutputPort("X_BT_desired"), ik.GetInputPort("X_BT_desired"))
+    builder.Connect(navigator.GetOutputPort("orientation_weight"), ik.GetInputPort("orientation_weight"))
+    builder.Connect(ik.GetOutputPort("desired_state"), station.GetInputPort("desired_state"))
+    builder.Connect(navigator.GetOutputPort("gripper_command"), station.GetInputPort("gripper_command"))
+    for port in WATCHED:
+        builder.Connect(station.GetOutputPort(port), monitor.GetInputPort(port))
+    builder.Connect(navigator.GetOutputPort("navigation_state"), monitor.GetInputPort("navigation_state"))
+    builder.Connect(selector.GetOutputPort("person_in_charge"), monitor.GetInputPort("person_in_charge"))
+
+    if meshcat is not None:
+        _show(builder, station, meshcat, recording)
+        CanalView.AddToBuilder(
+            builder=builder,
+            meshcat=meshcat,
+            canal=canal,
+            navigation_state=navigator.GetOutputPort("navigation_state"),
+            X_BT=station.GetOutputPort("X_BT"),
+            options=scenario.navigation,
+            X_WB=station.X_WB,
+        )
+    log = RunLog(
+        builder,
+        {
+            "navigation_state": navigator.GetOutputPort("navigation_state"),
+            "joystick": selector.GetOutputPort("joystick"),
+            "X_BT_desired": navigator.GetOutputPort("X_BT_desired"),
+            "orientation_weight": navigator.GetOutputPort("orientation_weight"),
+            "desired_state": ik.GetOutputPort("desired_state"),
+            "ik_status": ik.GetOutputPort("ik_status"),
+        }
+        | {name: station.GetOutputPort(name) for name in STATION_SIGNALS},
+        period,
+    )
+    diagram = builder.Build()
+    diagram.set_name("shared_autonomy")
+    return SharedAutonomy(diagram, station, navigator, ik, monitor, selector, log, q_start)
+
+
+def start_posture(solver: IkSolver, canal: CanalSurface) -> np.ndarray:
+    """The posture at home that the arm comes to from its own start posture. Shape (n,)."""
+    q = START_POSTURE
+    pose = np.concatenate([canal.center(canal.home_disk), canal.orientation(canal.home_disk)])
+    for _ in range(20):
+        q = solver.solve(pose, 15.0, q, 1.0).q
+    return q
+
+
+def _show(builder: DiagramBuilder, station: LioStation, meshcat: Meshcat, recording: bool) -> None:
+    """Draw robot, things and items."""
+    query = station.GetOutputPort("geometry_query")
+    visualizer = builder.AddNamedSystem("scene_view", MeshcatVisualizer(meshcat, MeshcatVisualizerParams()))
+    builder.Connect(query, visualizer.query_object_input_port())
+    soft = station.scene.soft_items
+    if soft:
+        view = builder.AddNamedSystem("soft_view", SoftView(items=soft, meshcat=meshcat, recording=recording))
+        builder.Connect(query, view.GetInputPort("query_object"))
+
+
+WATCHED = ("item_poses", "item_bounds", "item_speeds", "X_BT", "contact_forces", "penetration")
+"""Ports of the station that the monitor watches, by the same name."""
+STATION_SIGNALS = ("q", "X_BT", "gripper_state", "item_poses", "contact_forces")
+"""Ports of the station that are logged."""

@@ -1,0 +1,72 @@
+"""Options of a run, the same for both tasks (DESIGN, "What a person types")."""
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Literal
+
+from canal.errors import InputError
+
+PEOPLE = ("gamepad", "keyboard")
+"""Operators that need a browser."""
+
+
+@dataclass(frozen=True)
+class RunOptions:
+    """Load a washing machine, or move things from table to table, by shared autonomy on a canal."""
+
+    operator: str = "simulated"
+    """simulated, gamepad, keyboard, or a file with a recorded joystick (.npz or .csv; a log will do). In the browser,
+    whoever moves a stick or presses a key takes over."""
+    headless: bool = False
+    """Without a browser, as fast as it goes, with a progress bar."""
+    realtime_rate: float | None = None
+    """Simulated over real time; 0 for as fast as possible. Default: 1 in a browser, 0 headless."""
+    seed: int = 0
+    """Draws where things lie, and the simulated operator's errors."""
+    duration: float = 900.0
+    """Longest simulated time [s]; what is not done by then is not done."""
+    items: Literal["soft", "rigid"] | None = None
+    """Soft clothes (finite elements) or rigid bodies. Default: as the scenario says."""
+    scenario: str | None = None
+    """A scenario file (.yaml), or the name of one that ships."""
+    demos: tuple[Path, ...] = ()
+    """Demonstrations to learn the canal from, two or more, instead of the scenario's."""
+    canal: Path | None = None
+    """A learned canal (.npz) instead of the scenario's; see geosacs_drake.learn."""
+    summary: Path | None = None
+    """Write the study's measures here, as JSON."""
+    log: Path | None = None
+    """Write all signals at the control rate here, as .npz."""
+    record: Path | None = None
+    """Write a page here (.html) that replays the run with no network."""
+    video: Path | None = None
+    """Write a film here (.gif), seen from a fixed camera."""
+    port: int | None = None
+    """Port of the page on localhost. Default: the first free one from 7000 on."""
+
+    def __post_init__(self) -> None:
+        if self.headless and self.operator in PEOPLE:
+            raise InputError(f"--operator {self.operator} needs a browser: leave --headless out")
+        if self.demos and self.canal:
+            raise InputError("--demos and --canal exclude each other: give one of them")
+        if len(self.demos) == 1:
+            raise InputError("--demos got one file; a canal needs at least two demonstrations")
+        if not 0 < self.duration < 1e6:
+            raise InputError(f"--duration is {self.duration:g}; give seconds above 0")
+        if self.realtime_rate is not None and not 0 <= self.realtime_rate < 1e6:
+            raise InputError(f"--realtime-rate is {self.realtime_rate:g}; give 0 (as fast as possible) or more")
+        if self.seed < 0:
+            raise InputError(f"--seed is {self.seed}; give 0 or more")
+        for name in ("summary", "log", "record", "video"):
+            path = getattr(self, name)
+            if path is not None and not path.parent.is_dir():
+                raise InputError(f"--{name} {path}: there is no folder {path.parent}; make it first")
+            if path is not None and path.is_dir():
+                raise InputError(f"--{name} {path}: is a folder; give a file")
+
+    @property
+    def rate(self) -> float:
+        """The real-time rate to aim at; 0 for as fast as possible."""
+        if self.realtime_rate is not None:
+            return self.realtime_rate
+        return 0.0 if self.headless else 1.0

@@ -1,0 +1,125 @@
+"""From options to a finished run: what `run_laundry` and `run_relocation` share."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+
+from tqdm import tqdm
+
+from canal.demonstration import load_demonstration, write_npz
+from canal.learning import LearningOptions, learn_canal
+from canal.refinement import SupportPlane
+from canal.surface import CanalSurface
+from diagrams.joystick_recording import load_recording
+from diagrams.meshcat_recording import save_recording, start_recording
+from diagrams.meshcat_server import leave, start_meshcat
+from diagrams.run_log import named_signals
+from diagrams.scenario import Scenario, load_scenario, with_items
+from diagrams.shared_autonomy import build_shared_autonomy
+from geosacs_drake.command_line import ExitStatus, end, parse_options
+from geosacs_drake.options import PEOPLE, RunOptions
+from geosacs_drake.simulate import Progress, simulate
+from geosacs_drake.summary import describe, summarize, write_summary
+from models import MODELS
+
+
+def main(task: str) -> None:
+    """Run a task from the command line, and leave with its exit status."""
+    prog = f"run_{task}"
+    end(lambda: run(parse_options(RunOptions, prog), task), prog)
+
+
+def run(options: RunOptions, task: str) -> ExitStatus:
+    """Run a task as the options say.
+
+    Raises:
+        InputError: an option, a file or a scenario cannot be used.
+    """
+    scenario = load_scenario(options.scenario or task)
+    if options.items is not None:
+        scenario = with_items(scenario, options.items)
+    canal = prepare_canal(scenario, options)
+    meshcat = None if options.headless and options.record is None else start_meshcat(port=options.port)
+    if meshcat is not None and options.record is not None:
+        start_recording(meshcat, options.record)
+    system = build_shared_autonomy(
+        scenario=scenario,
+        canal=canal,
+        operator=operator_of(options),
+        seed=options.seed,
+        meshcat=meshcat,
+        recording=options.record is not None,
+    )
+    if meshcat is not None and not options.headless:
+        print(f"watch and steer at {meshcat.web_url()}", flush=True)
+    with _Bar(options) as bar:
+        result = simulate(
+            system,
+            task=scenario.task,
+            seed=options.seed,
+            item_names=[item.name for item in scenario.items],
+            duration=options.duration,
+            rate=options.rate,
+            report=bar.show,
+        )
+    summary = summarize(result)
+    print(describe(summary), flush=True)
+    if options.summary is not None:
+        write_summary(options.summary, summary)
+    if options.log is not None:
+        write_npz(options.log, **named_signals(result.signals))
+    if meshcat is not None and options.record is not None:
+        save_recording(meshcat, options.record, title=scenario.description or scenario.task)
+    status = ExitStatus.DONE if summary["success"] else ExitStatus.NOT_DONE
+    leave(status, meshcat)
+
+
+def prepare_canal(scenario: Scenario, options: RunOptions) -> CanalSurface:
+    """The canal that the options or the scenario name: loaded, or learned."""
+    if options.canal is not None:
+        return CanalSurface.load(options.canal)
+    if not options.demos and scenario.canal is not None:
+        return CanalSurface.load(scenario.resolve(scenario.canal, MODELS / "demonstrations"))
+    paths: list[Path] = list(options.demos) or [
+        scenario.resolve(name, MODELS / "demonstrations") for name in scenario.demonstrations
+    ]
+    planes = tuple(SupportPlane(tuple(p.normal), p.offset) for p in scenario.support_planes)  # type: ignore[arg-type]
+    learning = LearningOptions(support_planes=planes, **scenario.learning)  # type: ignore[arg-type]
+    canal = learn_canal([load_demonstration(path) for path in paths], learning)
+    for warning in canal.warnings:
+        print(f"canal: {warning}", file=sys.stderr)
+    return canal
+
+
+def operator_of(options: RunOptions):
+    """Who holds the joystick: `simulated`, `person`, or a recording."""
+    if options.operator == "simulated":
+        return "simulated"
+    if options.operator in PEOPLE:
+        return "person"
+    return load_recording(options.operator)
+
+
+class _Bar:
+    """A progress bar over simulated time, when there is no picture to watch."""
+
+    def __init__(self, options: RunOptions) -> None:
+        self._bar = tqdm(
+            total=None,
+            unit="s",
+            disable=None if options.headless else True,  # None: no bar into a file
+            file=sys.stderr,
+            bar_format="{desc}: {n:.1f} simulated s in {elapsed}{postfix}",
+        )
+
+    def __enter__(self) -> _Bar:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self._bar.close()
+
+    def show(self, progress: Progress) -> None:
+        """Show how far the run is."""
+        self._bar.set_description_str(f"{progress.placed} of {progress.things} placed", refresh=False)
+        self._bar.update(progress.time_s - self._bar.n)

@@ -1,0 +1,123 @@
+"""Run a built diagram to its end, in half seconds, and take from it what a summary needs."""
+
+from __future__ import annotations
+
+import signal
+import threading
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from pydrake.systems.analysis import Simulator, SimulatorStatus
+from pydrake.systems.framework import Context
+
+from diagrams.shared_autonomy import SharedAutonomy
+from geosacs_drake.summary import RunResult
+
+CHUNK_S = 0.5
+"""[s] Simulated between two looks at the clock: the summary's worst half second."""
+
+
+@dataclass(frozen=True)
+class Progress:
+    """How far a run is, for whoever shows it."""
+
+    time_s: float
+    placed: int
+    things: int
+
+
+def simulate(
+    system: SharedAutonomy,
+    *,
+    task: str,
+    seed: int,
+    item_names: list[str],
+    duration: float,
+    rate: float = 0.0,
+    report: Callable[[Progress], None] = lambda progress: None,
+) -> RunResult:
+    """Simulate until the task is done, given up, interrupted or out of time.
+
+    Args:
+        system: what to run.
+        task: its name, for the summary.
+        seed: likewise.
+        item_names: likewise, in the scenario's order.
+        duration: longest simulated time [s].
+        rate: real-time rate to aim at; 0 for as fast as possible.
+        report: called after each half second.
+
+    Returns:
+        What happened; a simulation that fails ends with the reason, and keeps what it had.
+    """
+    simulator = Simulator(system.diagram)
+    simulator.set_target_realtime_rate(rate)
+    root = simulator.get_context()
+    monitor_context = system.monitor.GetMyContextFromRoot(root)
+    interrupted = threading.Event()
+    factors: list[float] = []
+    reason = f"time is up after {duration:g} s"
+    with _interrupts(interrupted):
+        try:
+            simulator.Initialize()
+            while root.get_time() < duration - 1e-9:
+                begin, simulated = time.perf_counter(), root.get_time()
+                status = simulator.AdvanceTo(min(duration, simulated + CHUNK_S))
+                elapsed = time.perf_counter() - begin
+                if root.get_time() - simulated > 0.99 * CHUNK_S:
+                    factors.append((root.get_time() - simulated) / elapsed)
+                placed = system.monitor.GetOutputPort("placed_times").Eval(monitor_context)
+                report(Progress(root.get_time(), int((placed >= 0).sum()), len(placed)))
+                if status.reason() == SimulatorStatus.ReturnReason.kReachedTerminationCondition:
+                    reason = status.message()
+                    break
+                if interrupted.is_set():
+                    reason = "interrupted"
+                    break
+        except RuntimeError as error:  # of Drake's solvers: the plant's state has left what can be simulated
+            reason = f"the simulation failed: {' '.join(str(error).split())}"
+    return _result(system, root, task, seed, item_names, reason, np.array(factors))
+
+
+def _result(
+    system: SharedAutonomy,
+    root: Context,
+    task: str,
+    seed: int,
+    item_names: list[str],
+    reason: str,
+    factors: np.ndarray,
+) -> RunResult:
+    context = system.monitor.GetMyContextFromRoot(root)
+    distance, penetration = system.monitor.GetOutputPort("measures").Eval(context)
+    return RunResult(
+        task=task,
+        seed=seed,
+        reason=reason,
+        item_names=item_names,
+        placed_times=system.monitor.GetOutputPort("placed_times").Eval(context).copy(),
+        contact_pairs=system.station.contact_pairs,
+        peak_forces=system.monitor.GetOutputPort("peak_forces").Eval(context).copy(),
+        measured_correction_distance_m=float(distance),
+        max_penetration_m=float(penetration),
+        signals=system.log.signals(root),
+        realtime_factors=factors,
+    )
+
+
+class _interrupts:
+    """While it lasts, Ctrl-C and a polite kill only set an event, so that what was measured is still written."""
+
+    def __init__(self, event: threading.Event) -> None:
+        self._event = event
+
+    def __enter__(self) -> None:
+        if threading.current_thread() is threading.main_thread():
+            handle = lambda *_: self._event.set()  # noqa: E731
+            self._before = {s: signal.signal(s, handle) for s in (signal.SIGINT, signal.SIGTERM)}
+
+    def __exit__(self, *_: object) -> None:
+        for number, handler in getattr(self, "_before", {}).items():
+            signal.signal(number, handler)
