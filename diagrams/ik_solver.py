@@ -16,12 +16,15 @@ from diagrams.ik_options import IkOptions, IkStatus
 from diagrams.ik_quadratic import BoxQuadraticProgram
 
 # Gap to the optimum at which a tick ends, relative to the cost; the floor is the cost of standing still exactly.
-_RELATIVE_GAP = 1e-8
+_RELATIVE_GAP = 1e-7
 _COST_FLOOR = 1e-9
 # A target further off than this [m] pulls in the same direction, and its square stays finite.
 _FAR = 1e3
 _LEAST_QUATERNION = 1e-6
-_DAMPING_START, _DAMPING_GROWTH = 1e-3, 10.0
+_DAMPING_GROWTH = 4.0
+# In a box narrower than this [rad] the quadratic model holds throughout, also where it is not convex.
+_NARROW = 0.2
+_HEAVIEST = 1e9  # an orientation weight above this is as good as infinite
 
 
 class IkResult(NamedTuple):
@@ -81,6 +84,7 @@ class IkSolver:
         self.bounds = StepBounds(self.q_min, self.q_max, self.v_max, self.a_max)
         self.objective = PoseObjective(self.kinematics, options.position_weight)
         self.quadratic = BoxQuadraticProgram(n, options.qp_solvers)
+        self._identity = np.eye(n)
         self._axis_weights = tuple(float(w) for w in options.axis_weights)
         if len(self._axis_weights) != 3 or not all(w >= 0.0 and math.isfinite(w) for w in self._axis_weights):
             raise InputError(f"axis_weights {options.axis_weights}: give three finite factors >= 0")
@@ -158,42 +162,38 @@ class IkSolver:
         objective, quadratic = self.objective, self.quadratic
         f = objective.value(q)
         active = (q <= lower) | (q >= upper)
-        damping = 0.0
+        damping, narrow = 0.0, bool((upper - lower).max() < _NARROW)
         gradient = None
         iteration = 0
         while iteration < self.options.max_iterations:
             iteration += 1
             if gradient is None:
                 gradient, hessian, curvature = objective.derivatives()
-            exact = damping == 0.0
-            model = hessian if exact else hessian + damping * np.eye(self.n)
+            model = hessian if damping == 0.0 else hessian + damping * self._identity
             found = quadratic.solve(model, gradient, lower - q, upper - q)
-            if found is None and damping == 0.0:
-                exact = False
-                model = hessian - curvature
+            if found is None and not narrow:
+                model = model - curvature
                 found = quadratic.solve(model, gradient, lower - q, upper - q)
             if found is None:
-                damping = max(_DAMPING_GROWTH * damping, _DAMPING_START)
-                continue
+                found = quadratic.descend(model, gradient, lower - q, upper - q)
             step, at_bound = found
             expected = -float(gradient.dot(step) + 0.5 * step.dot(model.dot(step)))
-            enough = _RELATIVE_GAP * max(f, _COST_FLOOR)
-            if expected <= enough * 1e-2:
+            if expected <= 0.1 * _RELATIVE_GAP * max(f, _COST_FLOOR):
                 active = at_bound
                 break
             q_new = np.minimum(np.maximum(q + step, lower), upper)
             f_new = objective.value(q_new)
             if not f_new < f:
                 objective.value(q)
-                damping = max(_DAMPING_GROWTH * damping, _DAMPING_START)
+                # At least what makes the model agree with what was seen along this step.
+                seen = 2.0 * (f_new - f + expected) / float(step.dot(step))
+                damping = max(_DAMPING_GROWTH * damping, seen)
                 continue
-            # The cubic part of f along the step bounds what the next one can still gain.
-            left = (f - f_new - expected) ** 2 / expected
-            q, f, active, gradient, damping = q_new, f_new, at_bound, None, damping / _DAMPING_GROWTH
-            if damping < _DAMPING_START:
-                damping = 0.0
-            if exact and 10.0 * left <= enough and float(np.abs(step).max()) < 0.02:
+            damping = 0.0 if f - f_new > 0.5 * expected else damping / _DAMPING_GROWTH
+            q, f, active = q_new, f_new, at_bound
+            if quadratic.remaining(objective.gradient()) <= _RELATIVE_GAP * max(f, _COST_FLOOR):
                 break
+            gradient = None
         return q, f, iteration, active
 
     def _weights(self, w_o: float | np.ndarray) -> tuple[float, float, float] | None:
@@ -206,7 +206,8 @@ class IkSolver:
         if not (len(w) == 3 and math.isfinite(w[0] + w[1] + w[2])):
             return None
         a = self._axis_weights
-        return max(w[0], 0.0) * a[0], max(w[1], 0.0) * a[1], max(w[2], 0.0) * a[2]
+        x, y, z = (min(max(value, 0.0), _HEAVIEST) for value in w)
+        return x * a[0], y * a[1], z * a[2]
 
     def _hold(self, q_prev: np.ndarray, lower: np.ndarray, upper: np.ndarray, begin: float) -> IkResult:
         """The last posture, or the nearest that the bounds allow (braking, or on the way back into the limits)."""
