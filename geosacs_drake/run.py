@@ -12,7 +12,7 @@ from canal.learning import LearningOptions, learn_canal
 from canal.refinement import SupportPlane
 from canal.surface import CanalSurface
 from diagrams.joystick_recording import load_recording
-from diagrams.meshcat_recording import save_recording, start_recording
+from diagrams.meshcat_recording import Recording
 from diagrams.meshcat_server import leave, start_meshcat
 from diagrams.run_log import named_signals
 from diagrams.scenario import Scenario, load_scenario, with_items
@@ -41,8 +41,9 @@ def run(options: RunOptions, task: str) -> ExitStatus:
         scenario = with_items(scenario, options.items)
     canal = prepare_canal(scenario, options)
     meshcat = None if options.headless and options.record is None else start_meshcat(port=options.port)
+    recording = None
     if meshcat is not None and options.record is not None:
-        start_recording(meshcat, options.record)
+        recording = Recording(meshcat, title=scenario.description or scenario.task)
     system = build_shared_autonomy(
         scenario=scenario,
         canal=canal,
@@ -69,8 +70,8 @@ def run(options: RunOptions, task: str) -> ExitStatus:
         write_summary(options.summary, summary)
     if options.log is not None:
         write_npz(options.log, **named_signals(result.signals))
-    if meshcat is not None and options.record is not None:
-        save_recording(meshcat, options.record, title=scenario.description or scenario.task)
+    if recording is not None and options.record is not None:
+        recording.save(options.record)
     status = ExitStatus.DONE if summary["success"] else ExitStatus.NOT_DONE
     leave(status, meshcat)
 
