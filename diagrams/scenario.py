@@ -2,16 +2,19 @@
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, fields
 from pathlib import Path
 
-from pydrake.common.yaml import yaml_load_typed
+from pydrake.common.yaml import yaml_load, yaml_load_typed
+from yaml import YAMLError
 
 from canal.errors import InputError
+from canal.learning import LearningOptions
 from canal.navigation import NavigationOptions
 from diagrams.ik_options import IkOptions
 from diagrams.monitor import MonitorOptions
 from diagrams.operator_policy import OperatorOptions
+from diagrams.yaml_kinds import check_kinds
 from models import MODELS, SCENARIOS
 
 TASKS = ("laundry", "relocation")
@@ -160,14 +163,15 @@ def load_scenario(name: str | Path) -> Scenario:
         known = ", ".join(shipped_scenarios())
         raise InputError(f"scenario {str(name)!r} does not exist; give a YAML file or one of {known}")
     try:
+        check_kinds("", Scenario, yaml_load(filename=str(path)))
         scenario = yaml_load_typed(schema=Scenario, filename=str(path), defaults=Scenario())
-    except Exception as error:  # yaml and its typed reader raise RuntimeError, ValueError, TypeError, YAMLError, ...
-        raise InputError(f"scenario {path.name}: {_one_line(error)}; see models/scenarios for what can be said") from None
-    scenario.folder = str(path.parent)
-    try:
+        scenario.folder = str(path.parent)
         validate(scenario)
     except InputError as error:
         raise InputError(f"scenario {path.name}: {error}") from None
+    except (YAMLError, RuntimeError, ValueError, TypeError, OSError) as error:
+        words = " ".join(str(error).split())
+        raise InputError(f"scenario {path.name}: {words}; see models/scenarios for what can be said") from None
     return scenario
 
 
@@ -179,10 +183,6 @@ def with_items(scenario: Scenario, kind: str) -> Scenario:
         for item in scenario.items:
             item.kind = kind
     return scenario
-
-
-def _one_line(error: Exception) -> str:
-    return " ".join(str(error).split()) or type(error).__name__
 
 
 def _numbers(what: str, values: Sequence[float], count: int) -> None:
@@ -238,6 +238,8 @@ def validate(scenario: Scenario) -> None:
             _region(f"items.{item.name}.goal", item.goal)
         elif scenario.drum is None:
             raise InputError(f"items.{item.name} has no goal, and there is no drum; give one of them")
+    for key in scenario.learning:
+        _one_of("learning", key, [f.name for f in fields(LearningOptions)])
     if scenario.drum is not None:
         _numbers("drum.center", scenario.drum.center, 3)
         _numbers("drum.inward", scenario.drum.inward, 3)
