@@ -50,18 +50,17 @@ def tube(points: np.ndarray, radius: float, sides: int = 6) -> TriangleMesh:
     Its cross-sections do not twist: each turns into the next by the smallest rotation.
     """
     points = np.asarray(points, dtype=float)
-    tangents = np.gradient(points, axis=0)
-    tangents /= np.maximum(np.linalg.norm(tangents, axis=1, keepdims=True), 1e-12)
-    side = np.cross(tangents[0], np.eye(3)[np.argmin(np.abs(tangents[0]))])
     rings = np.empty((len(points), sides, 3))
     angles = circle_angles(sides)[:, None]
-    for k, tangent in enumerate(tangents):
+    tangent, side = np.array([0.0, 0, 1]), np.zeros(3)
+    for k, direction in enumerate(np.gradient(points, axis=0)):
+        length = float(np.linalg.norm(direction))
+        if length > 1e-9:  # else the polyline stands still or turns back on itself here
+            tangent = direction / length
         side = side - (side @ tangent) * tangent
-        norm = float(np.linalg.norm(side))
-        if norm < 1e-9:  # the polyline turns back on itself
+        if np.linalg.norm(side) < 1e-6:
             side = np.cross(tangent, np.eye(3)[np.argmin(np.abs(tangent))])
-            norm = float(np.linalg.norm(side))
-        side = side / norm
+        side = side / np.linalg.norm(side)
         rings[k] = points[k] + radius * (np.cos(angles) * side + np.sin(angles) * np.cross(tangent, side))
     return _skin(rings)
 
