@@ -94,6 +94,9 @@ class CanalSurface:
         arc.setflags(write=False)
         object.__setattr__(self, "_arc", arc)
 
+    def __repr__(self) -> str:
+        return f"CanalSurface({self.n_disks} disks, {self.length:.3f} m, {len(self.demonstrations)} demonstrations)"
+
     @property
     def n_disks(self) -> int:
         """N_f."""

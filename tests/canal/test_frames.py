@@ -41,15 +41,15 @@ def test_frenet_of_a_helix_is_exact():
 
 
 def test_frenet_of_a_circle_is_exact():
-    u, points, first, second, kappa, _ = helix(0.4, 0.0, 1, 100)
-    tangent, normal, binormal, curvature = frenet_frames(first, second)
+    _u, points, first, second, _kappa, _ = helix(0.4, 0.0, 1, 100)
+    _tangent, normal, binormal, curvature = frenet_frames(first, second)
     assert np.abs(curvature - 1 / 0.4).max() < 1e-12
     assert np.abs(normal + points / 0.4).max() < 1e-12
     assert np.abs(binormal - [0, 0, 1]).max() < 1e-12
 
 
 def test_frenet_of_a_line_is_some_constant_frame():
-    tangent, normal, binormal, curvature = frenet_frames(np.tile([2.0, 1, 0], (50, 1)), np.zeros((50, 3)))
+    tangent, normal, _binormal, curvature = frenet_frames(np.tile([2.0, 1, 0], (50, 1)), np.zeros((50, 3)))
     assert curvature.max() == 0
     assert np.ptp(normal, axis=0).max() < 1e-14
     assert np.abs(np.sum(normal * tangent, axis=1)).max() < 1e-14
@@ -87,7 +87,7 @@ def test_bishop_frames_are_orthonormal_and_turn_no_more_than_they_must(seed):
     frame = np.stack([tangents, b1, b2], axis=1)
     assert np.abs(frame @ frame.transpose(0, 2, 1) - np.eye(3)).max() < 1e-12
     # Minimal: no turn about the tangent, up to the third order of the step.
-    turn = Rotation.from_matrix((frame[1:].transpose(0, 2, 1) @ frame[:-1])).as_rotvec()
+    turn = Rotation.from_matrix(frame[1:].transpose(0, 2, 1) @ frame[:-1]).as_rotvec()
     mean = tangents[1:] + tangents[:-1]
     mean /= np.linalg.norm(mean, axis=1, keepdims=True)
     about = np.abs(np.sum(turn * mean, axis=1))

@@ -1,0 +1,138 @@
+import numpy as np
+import pytest
+from canals import elliptic_canal, hard_canal
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from canal.errors import InputError
+from canal.learning import LearningOptions
+from canal.refinement import SupportPlane
+from canal.surface import CanalSurface
+
+disks = st.floats(0.0, 200.0)
+ratios = st.floats(0.0, 1.0)
+angles = st.floats(-3.1, 3.1)
+DOCUMENTED = (
+    "directrix",
+    "radii",
+    "tangents",
+    "normals",
+    "x_axes",
+    "y_axes",
+    "orientations",
+    "orientation_sd",
+    "orientation_weights",
+    "demonstrations",
+    "demonstration_orientations",
+)
+
+
+@given(disks, st.floats(0.001, 1.0), angles)
+@settings(max_examples=200, deadline=None)
+@pytest.mark.parametrize("canal", [hard_canal(), elliptic_canal()], ids=["circles", "ellipses"])
+def test_coordinates_invert_points(canal, disk, eta, phi):
+    point = canal.point(disk, eta, phi)
+    back = canal.disk_coordinates(disk, point)
+    assert back == pytest.approx((eta, phi), abs=1e-9)
+    x, y = canal.axes(disk)
+    assert abs(np.linalg.norm(point - canal.center(disk)) - eta * canal.extent(disk, phi)) < 1e-12
+    assert abs((point - canal.center(disk)) @ np.cross(x, y)) < 1e-12
+
+
+@given(disks)
+@settings(max_examples=100, deadline=None)
+def test_between_disks_everything_is_unit_and_between(disk):
+    canal = hard_canal()
+    i, t = int(disk), disk - int(disk)
+    x, y = canal.axes(disk)
+    assert np.abs([x @ x - 1, y @ y - 1, x @ y]).max() < 1e-12
+    assert np.abs(canal.center(disk) - (1 - t) * canal.directrix[i] - t * canal.directrix[i + 1]).max() < 1e-12
+    assert canal.radius(disk) == pytest.approx((1 - t) * canal.radii[i] + t * canal.radii[i + 1], abs=1e-15)
+    assert np.linalg.norm(canal.orientation(disk)) == pytest.approx(1, abs=1e-15)
+    low, high = sorted(canal.orientation_weights[i : i + 2])
+    assert low - 1e-12 <= canal.weight(disk) <= high + 1e-12
+
+
+def test_at_a_disk_the_arrays_are_met_exactly_and_beyond_the_ends_clipped():
+    canal = hard_canal()
+    last = canal.n_disks - 1
+    for s in (0, 7, canal.home_disk, last):
+        assert np.array_equal(canal.center(s), canal.directrix[s])
+        assert np.array_equal(canal.axes(s)[0], canal.x_axes[s])
+        assert np.array_equal(canal.axes(s)[1], canal.y_axes[s])
+        assert canal.weight(s) == canal.orientation_weights[s]
+    assert np.array_equal(canal.center(-5.0), canal.directrix[0])
+    assert np.array_equal(canal.center(last + 5.0), canal.directrix[-1])
+    assert canal.home_disk == last // 2
+
+
+@pytest.mark.parametrize("canal", [hard_canal(), elliptic_canal()], ids=["circles", "ellipses"])
+def test_save_and_load_is_the_identity(canal, tmp_path):
+    canal = canal.with_(warnings=("tief: 3°", "x"), support_planes=(SupportPlane((0, 0.6, 0.8), -1.5),))
+    canal.save(tmp_path / "c.npz")
+    back = CanalSurface.load(tmp_path / "c.npz")
+    for name in (*DOCUMENTED, "x_global", "ellipses"):
+        a, b = getattr(canal, name), getattr(back, name)
+        assert a is b is None or np.array_equal(a, b), name
+    assert back.warnings == canal.warnings
+    assert back.moving_time_s == canal.moving_time_s
+    assert back.support_planes == canal.support_planes
+    assert np.array_equal(back.point(3.3, 0.7, 1.0), canal.point(3.3, 0.7, 1.0))
+
+
+def test_a_file_with_the_documented_keys_alone_is_a_canal(tmp_path):
+    canal = hard_canal()
+    arrays = {name: getattr(canal, name) for name in DOCUMENTED}
+    np.savez(tmp_path / "c.npz", **arrays, moving_time_s=canal.moving_time_s, format_version=1)
+    back = CanalSurface.load(tmp_path / "c.npz")
+    assert np.array_equal(back.directrix, canal.directrix)
+    assert back.warnings == ()
+    assert np.array_equal(back.x_global, [1, 0, 0])
+
+
+@pytest.mark.parametrize(
+    ("change", "says"),
+    [
+        ({"radii": None}, "lacks radii"),
+        ({"radii": np.ones(5)}, "radii has shape"),
+        ({"x_axes": "NaN"}, "x_axes is not finite"),
+        ({"format_version": 99}, "format 99"),
+        ({"directrix": np.zeros((4, 3))}, "odd"),
+    ],
+)
+def test_a_file_that_is_no_canal_gives_one_line(tmp_path, change, says):
+    canal = hard_canal()
+    arrays = {name: getattr(canal, name) for name in DOCUMENTED} | {"moving_time_s": 3.0} | change
+    arrays = {key: np.full(canal.x_axes.shape, np.nan) if isinstance(v, str) else v for key, v in arrays.items()}
+    np.savez(tmp_path / "c.npz", **{key: value for key, value in arrays.items() if value is not None})
+    with pytest.raises(InputError, match=says):
+        CanalSurface.load(tmp_path / "c.npz")
+
+
+def test_a_radius_of_zero_divides_nothing():
+    canal = hard_canal()
+    thin = canal.with_(radii=np.zeros(canal.n_disks))
+    assert thin.disk_coordinates(5.5, thin.center(5.5) + [0.1, 0, 0]) == (0.0, 0.0)
+    assert np.array_equal(thin.point(5.5, 1.0, 2.0), thin.center(5.5))
+
+
+def test_points_are_clipped_at_planes_towards_the_centre():
+    canal = hard_canal()
+    s = canal.home_disk
+    normal = -canal.x_axes[s]
+    plane = SupportPlane(tuple(normal), float(normal @ canal.directrix[s]) - 0.3 * canal.radii[s])
+    clipped = canal.with_(support_planes=(plane,))
+    p = clipped.point(s, 1.0, 0.0)
+    assert plane.height(p) == pytest.approx(0, abs=1e-12)
+    assert clipped.disk_coordinates(s, p) == pytest.approx((0.3, 0.0), abs=1e-9)
+    assert np.array_equal(clipped.point(s, 0.2, 0.0), canal.point(s, 0.2, 0.0))
+    assert np.array_equal(clipped.point(s, 1.0, np.pi), canal.point(s, 1.0, np.pi))
+
+
+def test_arrays_cannot_be_written():
+    with pytest.raises(ValueError, match="read-only"):
+        hard_canal().radii[0] = 1
+
+
+def test_options_default_to_the_papers_frame():
+    assert LearningOptions().x_global == (1, 0, 0)
