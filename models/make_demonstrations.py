@@ -127,7 +127,9 @@ def progress(hand: Hand, moving_time: float, rng: np.random.Generator) -> np.nda
     moving = int(moving_time * hand.tempo * RATE)
     t = np.linspace(0, 1, moving)
     # Never still on the way, gentle at the ends.
-    speed = (0.25 + np.minimum(1.0, 6.0 * np.minimum(t, 1 - t))) * (1 + 0.25 * np.sin(2 * np.pi * (2.3 * t + rng.random())))
+    speed = (0.25 + np.minimum(1.0, 6.0 * np.minimum(t, 1 - t))) * (
+        1 + 0.25 * np.sin(2 * np.pi * (2.3 * t + rng.random()))
+    )
     s = np.cumsum(speed)
     s = (s - s[0]) / (s[-1] - s[0])
     # A hand that goes back by 8 mm of path, and on again.

@@ -17,10 +17,10 @@ HERE = Path(__file__).parent / "items"
 MESHES = HERE / "meshes"
 SCRIPT = "models/make_items.py"
 
-SKIN = Material(friction=0.7)
-CHINA = Material(friction=0.6)
-BEECH = Material(friction=0.6)
-COTTON = Material(friction=0.9, resolution=0.012)
+SKIN = Material(friction=0.7, modulus=3e6)
+CHINA = Material(friction=0.6, modulus=5e6)
+BEECH = Material(friction=0.6, modulus=5e6)
+COTTON = Material(friction=0.9, modulus=1e6, resolution=0.03)
 
 RED, LEAF, STALK = (0.83, 0.14, 0.13), (0.35, 0.60, 0.20), (0.38, 0.26, 0.15)
 TEAL, AMBER = (0.05, 0.55, 0.60), (0.95, 0.68, 0.18)
@@ -82,7 +82,15 @@ def apple() -> None:
 def cup() -> None:
     """A cup with a handle to look at; its walls are one solid to the touch."""
     r, h = CUP_RADIUS, CUP_HEIGHT / 2
-    wall = [[0, -h], [0.030, -h], [r - 0.002, -h + 0.012], [r, h], [r - 0.003, h], [r - 0.005, -h + 0.014], [0, -h + 0.006]]
+    wall = [
+        [0, -h],
+        [0.030, -h],
+        [r - 0.002, -h + 0.012],
+        [r, h],
+        [r - 0.003, h],
+        [r - 0.005, -h + 0.014],
+        [0, -h + 0.006],
+    ]
     body = turned(rounded(wall, 0.004), sides=40)
     bend = np.linspace(-0.45 * pi, 0.45 * pi, 15)
     section = 2 * pi * np.arange(10) / 10

@@ -75,9 +75,7 @@ def drum_ribs() -> Mesh:
         fade = np.sin(np.linspace(0.15, np.pi - 0.15, 9))[:, None] ** 0.4
         radius = DRUM_RADIUS - 0.002 - 0.024 * fade * np.cos(across * np.pi / 2) ** 1.5
         phi = angle + across * 0.032 / DRUM_RADIUS
-        points = np.stack(
-            [radius * np.cos(phi), np.repeat(along[:, None], 13, axis=1), radius * np.sin(phi)], axis=-1
-        )
+        points = np.stack([radius * np.cos(phi), np.repeat(along[:, None], 13, axis=1), radius * np.sin(phi)], axis=-1)
         ribs.append(grid(points))
     return merge(*ribs)
 

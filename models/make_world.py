@@ -14,10 +14,9 @@ from models.sdf import Link, Material, box, cylinder, mesh, write_model
 HERE = Path(__file__).parent / "world"
 SCRIPT = "models/make_world.py"
 
-STEEL = Material(friction=0.4, modulus=5e6)
-"""Sheet metal and drum; 5 MPa keeps a dropped towel's dent below a millimetre."""
-WOOD = Material(friction=0.6, modulus=5e6)
-WICKER = Material(friction=0.6, modulus=3e6)
+STEEL = Material(friction=0.4)
+WOOD = Material(friction=0.6)
+WICKER = Material(friction=0.6)
 
 WHITE = (0.94, 0.95, 0.96)
 GREY = (0.72, 0.75, 0.78)

@@ -84,14 +84,14 @@ def superellipse(a: float, b: float, power: float, sides: int = 48) -> np.ndarra
     """Outline (sides, 2) of |x/a|^power + |y/b|^power = 1: an ellipse at 2, towards a rectangle above."""
     t = 2 * np.pi * np.arange(sides) / sides
     c, s = np.cos(t), np.sin(t)
-    return np.stack(
-        [a * np.sign(c) * np.abs(c) ** (2 / power), b * np.sign(s) * np.abs(s) ** (2 / power)], axis=1
-    )
+    return np.stack([a * np.sign(c) * np.abs(c) ** (2 / power), b * np.sign(s) * np.abs(s) ** (2 / power)], axis=1)
 
 
 def lofted(outlines: Sequence[np.ndarray], centers: Sequence[Sequence[float]]) -> Mesh:
     """A closed skin along outlines (n, 2) in planes across z, each at its centre (x, y, z); ends are capped."""
-    rows = [np.column_stack([o + np.asarray(c)[:2], np.full(len(o), c[2])]) for o, c in zip(outlines, centers, strict=True)]
+    rows = [
+        np.column_stack([o + np.asarray(c)[:2], np.full(len(o), c[2])]) for o, c in zip(outlines, centers, strict=True)
+    ]
     first, last = (np.broadcast_to(np.asarray(c, dtype=float), rows[0].shape) for c in (centers[0], centers[-1]))
     return grid(np.stack([first, *rows, last]), close_columns=True).outward()
 
