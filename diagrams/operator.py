@@ -42,7 +42,7 @@ class OperatorMind(LeafSystem):
     def _update(self, context: Context, discrete: DiscreteValues) -> None:
         time = context.get_time()
         mind = context.get_discrete_state(self._mind).value()
-        if time > self._delay_s + PERIOD / 2:  # before that nothing has reached the eye
+        if time > self._delay_s + 2.5 * PERIOD:  # before that nothing has been sampled, and reached the eye
             mind = self._policy.decide(mind, self._look(self._sight.Eval(context), time), time)
         discrete.set_value(self._mind, mind)
         discrete.set_value(self._hand, self._policy.joystick(mind, time))

@@ -5,9 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Literal
 
-import numpy as np
 from pydrake.geometry import Meshcat, MeshcatVisualizer, MeshcatVisualizerParams
-from pydrake.systems.framework import Diagram, DiagramBuilder
+from pydrake.systems.framework import Diagram, DiagramBuilder, OutputPort
+from pydrake.systems.primitives import ZeroOrderHold
 
 from canal.surface import CanalSurface
 from diagrams.canal_view import CanalView
@@ -21,9 +21,11 @@ from diagrams.meshcat_joystick import MeshcatJoystick
 from diagrams.monitor import Monitor
 from diagrams.navigator import CanalNavigator
 from diagrams.operator import SimulatedOperator
+from diagrams.operator_policy import PERIOD
 from diagrams.run_log import RunLog
 from diagrams.scenario import Scenario
 from diagrams.soft_view import SoftView
+from diagrams.start_posture import StartPosture, find_start_posture
 
 
 @dataclass(frozen=True)
@@ -37,7 +39,7 @@ class SharedAutonomy:
     monitor: Monitor
     selector: JoystickSelector
     log: RunLog
-    q_start: np.ndarray
+    start: StartPosture
 
 
 def build_shared_autonomy(
@@ -71,10 +73,10 @@ def build_shared_autonomy(
     builder = DiagramBuilder()
 
     solver = IkSolver(make_arm_plant(), TCP_FRAME, scenario.ik)
-    q_start = start_posture(solver, canal)
-    station = LioStation.AddToBuilder(builder=builder, scenario=scenario, seed=seed, q0=q_start)
+    start = find_start_posture(solver, canal, preferred=START_POSTURE)
+    station = LioStation.AddToBuilder(builder=builder, scenario=scenario, seed=seed, q0=start.q)
     navigator = CanalNavigator.AddToBuilder(builder=builder, canal=canal, options=scenario.navigation, period=period)
-    ik = builder.AddNamedSystem("ik", OrientationWeightedIk(solver, q_start=q_start, period=period))
+    ik = builder.AddNamedSystem("ik", OrientationWeightedIk(solver, q_start=start.q, period=period))
     monitor = Monitor.AddToBuilder(
         builder=builder,
         canal=canal,
@@ -84,6 +86,14 @@ def build_shared_autonomy(
         options=scenario.monitor,
         period=period,
     )
+
+    # Each measurement is taken once a tick, before the plant's step: whoever needs it reads the same sample.
+    measured: dict[str, OutputPort] = {}
+    for name, every in (dict.fromkeys(MEASURED, period) | dict.fromkeys(THINGS, PERIOD)).items():
+        port = station.GetOutputPort(name)
+        hold = builder.AddNamedSystem(f"measured_{name}", ZeroOrderHold(every, port.size()))
+        builder.Connect(port, hold.get_input_port())
+        measured[name] = hold.get_output_port()
 
     person = None if meshcat is None else MeshcatJoystick.AddToBuilder(builder=builder, meshcat=meshcat)
     if operator == "simulated":
@@ -96,8 +106,8 @@ def build_shared_autonomy(
             navigation=scenario.navigation,
             seed=seed,
         )
-        for port in ("item_poses", "item_bounds", "X_BT"):
-            builder.Connect(station.GetOutputPort(port), source.GetInputPort(port))
+        for name in ("item_poses", "item_bounds", "X_BT"):
+            builder.Connect(measured[name], source.GetInputPort(name))
         builder.Connect(navigator.GetOutputPort("navigation_state"), source.GetInputPort("navigation_state"))
     elif operator == "person":
         source = None
@@ -110,14 +120,15 @@ def build_shared_autonomy(
     )
 
     builder.Connect(selector.GetOutputPort("joystick"), navigator.GetInputPort("joystick"))
-    builder.Connect(station.GetOutputPort("gripper_state"), navigator.GetInputPort("gripper_state"))
+    builder.Connect(measured["gripper_state"], navigator.GetInputPort("gripper_state"))
     builder.Connect(monitor.GetOutputPort("alarm"), navigator.GetInputPort("alarm"))
     builder.Connect(navigator.GetOutputPort("X_BT_desired"), ik.GetInputPort("X_BT_desired"))
     builder.Connect(navigator.GetOutputPort("orientation_weight"), ik.GetInputPort("orientation_weight"))
     builder.Connect(ik.GetOutputPort("desired_state"), station.GetInputPort("desired_state"))
     builder.Connect(navigator.GetOutputPort("gripper_command"), station.GetInputPort("gripper_command"))
-    for port in WATCHED:
-        builder.Connect(station.GetOutputPort(port), monitor.GetInputPort(port))
+    for name, port in measured.items():
+        if monitor.HasInputPort(name):
+            builder.Connect(port, monitor.GetInputPort(name))
     builder.Connect(navigator.GetOutputPort("navigation_state"), monitor.GetInputPort("navigation_state"))
     builder.Connect(selector.GetOutputPort("person_in_charge"), monitor.GetInputPort("person_in_charge"))
 
@@ -128,7 +139,7 @@ def build_shared_autonomy(
             meshcat=meshcat,
             canal=canal,
             navigation_state=navigator.GetOutputPort("navigation_state"),
-            X_BT=station.GetOutputPort("X_BT"),
+            X_BT=measured["X_BT"],
             options=scenario.navigation,
             X_WB=station.X_WB,
         )
@@ -142,21 +153,12 @@ def build_shared_autonomy(
             "desired_state": ik.GetOutputPort("desired_state"),
             "ik_status": ik.GetOutputPort("ik_status"),
         }
-        | {name: station.GetOutputPort(name) for name in STATION_SIGNALS},
+        | {name: measured[name] for name in ("q", "X_BT", "gripper_state", "contact_forces", "item_poses")},
         period,
     )
     diagram = builder.Build()
     diagram.set_name("shared_autonomy")
-    return SharedAutonomy(diagram, station, navigator, ik, monitor, selector, log, q_start)
-
-
-def start_posture(solver: IkSolver, canal: CanalSurface) -> np.ndarray:
-    """The posture at home that the arm comes to from its own start posture. Shape (n,)."""
-    q = START_POSTURE
-    pose = np.concatenate([canal.center(canal.home_disk), canal.orientation(canal.home_disk)])
-    for _ in range(20):
-        q = solver.solve(pose, 15.0, q, 1.0).q
-    return q
+    return SharedAutonomy(diagram, station, navigator, ik, monitor, selector, log, start)
 
 
 def _show(builder: DiagramBuilder, station: LioStation, meshcat: Meshcat, recording: bool) -> None:
@@ -170,7 +172,7 @@ def _show(builder: DiagramBuilder, station: LioStation, meshcat: Meshcat, record
         builder.Connect(query, view.GetInputPort("query_object"))
 
 
-WATCHED = ("item_poses", "item_bounds", "item_speeds", "X_BT", "contact_forces", "penetration")
-"""Ports of the station that the monitor watches, by the same name."""
-STATION_SIGNALS = ("q", "X_BT", "gripper_state", "item_poses", "contact_forces")
-"""Ports of the station that are logged."""
+MEASURED = ("q", "X_BT", "gripper_state", "contact_forces", "penetration")
+"""Ports of the station that are sampled at the control rate."""
+THINGS = ("item_poses", "item_bounds", "item_speeds")
+"""Ports of the station that are looked at 20 times a second."""
