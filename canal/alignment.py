@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from functools import cache
 
 import numpy as np
@@ -53,6 +54,28 @@ def align(motions: list[Motion], band: float = BAND, smoothing: float = WARP_SMO
             found.append(_along(path, path[:, 0], m)[1])
         warps = _centred(_smoothed(np.stack(found), smoothing * m))
     return warps
+
+
+def align_to(
+    reference: np.ndarray, motion: Motion, band: float = BAND, smoothing: float = WARP_SMOOTHING
+) -> np.ndarray:
+    """Where along one demonstration the points of a reference curve are.
+
+    Args:
+        reference: a directrix, uniform in arc, [m]. Shape (M, 3).
+        motion: of as many points.
+        band, smoothing: as in `align`.
+
+    Returns:
+        Positions in [0, M - 1] along the demonstration, from 0 to M - 1. Shape (M,).
+
+    Raises:
+        InputError: it runs in the opposite direction.
+    """
+    _refuse_opposite([replace(motion, position=reference, name="the canal"), motion])
+    m = len(reference)
+    path = np.array(_warping_path(reference, motion.position, band), dtype=float)
+    return _smoothed(_along(path, path[:, 0], m)[1:], smoothing * m)[0]
 
 
 def sample(values: np.ndarray, at: np.ndarray) -> np.ndarray:

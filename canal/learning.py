@@ -11,6 +11,7 @@ import numpy as np
 from canal import orientation as orient
 from canal.alignment import BAND, WARP_SMOOTHING, align, sample
 from canal.demonstration import Demonstration
+from canal.ellipses import FEWEST_FOR_ELLIPSES, disk_ellipses
 from canal.errors import InputError
 from canal.frames import correction_frames, perpendicular
 from canal.refinement import SupportPlane, dips, hold_at_planes
@@ -152,6 +153,7 @@ def build_surface(
     moving_time_s: float,
     options: LearningOptions = LearningOptions(),
     raw: list[np.ndarray] | None = None,
+    widening: np.ndarray | float = 0.0,
 ) -> CanalSurface:
     """The canal around demonstrations that are aligned disk by disk (paper IV-A, IV-B, V-B).
 
@@ -162,6 +164,7 @@ def build_surface(
         moving_time_s: mean time spent moving, [s].
         options: margin, planes, frames, weights.
         raw: further points that must lie in the balls, each (., 3), [m].
+        widening: added to the radii besides the margin, [m]. Shape (N,).
 
     Raises:
         InputError: a centre lies beyond a support plane.
@@ -170,7 +173,7 @@ def build_surface(
     radii = np.linalg.norm(positions - centres, axis=2).max(axis=0)
     if raw is not None:
         radii = _containing(centres, radii, np.concatenate(raw))
-    radii = radii + options.margin
+    radii = radii + options.margin + widening
     quaternions = orient.agree_in_sign(quaternions)
     mean = orient.mean_orientation(quaternions)
     spread = orient.orientation_spread(quaternions, mean)
@@ -195,6 +198,12 @@ def build_surface(
         y_window=options.y_window,
         max_turn=MAX_X_TURN,
     )
+    ellipses = None
+    warnings = _warnings(centres, tangents, normals, radii, options.support_planes)
+    if options.ellipse and len(positions) >= FEWEST_FOR_ELLIPSES:
+        ellipses = disk_ellipses(positions - centres, x_axes, y_axes, radii)
+    elif options.ellipse:
+        warnings += (f"{len(positions)} demonstrations say nothing about ellipses (3 do): cross-sections are circles",)
     return CanalSurface(
         directrix=centres,
         radii=radii,
@@ -208,9 +217,10 @@ def build_surface(
         demonstrations=positions,
         demonstration_orientations=quaternions,
         moving_time_s=moving_time_s,
+        ellipses=ellipses,
         support_planes=options.support_planes,
         x_global=x_global,
-        warnings=_warnings(centres, tangents, normals, radii, options.support_planes),
+        warnings=warnings,
     )
 
 

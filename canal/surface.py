@@ -5,28 +5,13 @@ from __future__ import annotations
 import math
 import os
 from dataclasses import dataclass, fields, replace
-from pathlib import Path
 
 import numpy as np
+from numpy.typing import ArrayLike
 
-from canal.demonstration import read_npz, write_npz
-from canal.errors import InputError
+from canal.demonstration import Demonstration
 from canal.refinement import SupportPlane
-
-FORMAT_VERSION = 1
-_SHAPES = {  # of the arrays every file has; N disks, n demonstrations
-    "directrix": ("N", 3),
-    "radii": ("N",),
-    "tangents": ("N", 3),
-    "normals": ("N", 3),
-    "x_axes": ("N", 3),
-    "y_axes": ("N", 3),
-    "orientations": ("N", 4),
-    "orientation_sd": ("N",),
-    "orientation_weights": ("N",),
-    "demonstrations": ("n", "N", 3),
-    "demonstration_orientations": ("n", "N", 4),
-}
+from canal.surface_file import read_canal_fields, save_canal
 
 
 @dataclass(frozen=True, eq=False)
@@ -227,48 +212,51 @@ class CanalSurface:
 
     def save(self, path: str | os.PathLike) -> None:
         """Write the canal to one `.npz`; `load` gives it back bit for bit."""
-        arrays = {key: getattr(self, key) for key in _SHAPES}
-        arrays["moving_time_s"] = np.array(self.moving_time_s)
-        arrays["format_version"] = np.array(FORMAT_VERSION)
-        arrays["x_global"] = self.x_global
-        arrays["support_planes"] = np.array([(*p.normal, p.offset) for p in self.support_planes]).reshape(-1, 4)
-        arrays["warnings"] = np.array(self.warnings, dtype=np.str_)
-        if self.ellipses is not None:
-            arrays["ellipses"] = self.ellipses
-        write_npz(path, **arrays)
+        save_canal(self, path)
 
     @classmethod
     def load(cls, path: str | os.PathLike) -> CanalSurface:
-        """Read a canal written by `save`, or by any program that writes the arrays of `_SHAPES`.
+        """Read a canal written by `save`, or by any program that writes the documented arrays.
 
         Raises:
             InputError: it is not a canal file, with what is missing or wrong.
         """
-        arrays = read_npz(Path(path), "a canal")
-        missing = [key for key in (*_SHAPES, "moving_time_s") if key not in arrays]
-        if missing:
-            raise InputError(f"{path}: is no canal file, it lacks {', '.join(missing)}; make one with learn -o")
-        version = int(arrays.get("format_version", FORMAT_VERSION))
-        if version > FORMAT_VERSION:
-            raise InputError(f"{path}: format {version}, this program reads up to {FORMAT_VERSION}; update it")
-        sizes = {"N": len(np.atleast_1d(arrays["directrix"])), "n": len(np.atleast_1d(arrays["demonstrations"]))}
-        if sizes["N"] < 3 or sizes["N"] % 2 == 0:
-            raise InputError(f"{path}: {sizes['N']} disks; a canal has an odd number of at least 3")
-        for key, shape in _SHAPES.items():
-            wanted = tuple(sizes[side] if isinstance(side, str) else side for side in shape)
-            if arrays[key].shape != wanted or not np.issubdtype(arrays[key].dtype, np.number):
-                raise InputError(f"{path}: {key} has shape {arrays[key].shape}; it must be {wanted}, numbers")
-            if not np.isfinite(arrays[key]).all():
-                raise InputError(f"{path}: {key} is not finite; make the file again with learn -o")
-        planes = arrays.get("support_planes", np.empty((0, 4)))
-        return cls(
-            **{key: arrays[key] for key in _SHAPES},
-            moving_time_s=float(arrays["moving_time_s"]),
-            ellipses=arrays.get("ellipses"),
-            support_planes=tuple(SupportPlane((a, b, c), d) for a, b, c, d in planes.tolist()),
-            x_global=arrays.get("x_global"),  # type: ignore[arg-type]
-            warnings=tuple(str(line) for line in arrays.get("warnings", ())),
-        )
+        return cls(**read_canal_fields(path))
+
+    def retarget(
+        self,
+        pick: ArrayLike | tuple[ArrayLike, ArrayLike] | None = None,
+        place: ArrayLike | tuple[ArrayLike, ArrayLike] | None = None,
+        support_planes: tuple[SupportPlane, ...] | None = None,
+    ) -> CanalSurface:
+        """This canal bent to new end poses; see `canal.retargeting.retarget` and `shape_cost`."""
+        from canal.retargeting import retarget
+
+        return retarget(self, pick, place, support_planes)
+
+    def reverse(self) -> CanalSurface:
+        """This canal from place to pick, with the same disks and the same correction frames."""
+        from canal.editing import reverse
+
+        return reverse(self)
+
+    def cut(self, first: float, last: float) -> CanalSurface:
+        """The part between two disks as a canal of its own; see `canal.editing.cut`."""
+        from canal.editing import cut
+
+        return cut(self, first, last)
+
+    def join(self, following: CanalSurface) -> CanalSurface:
+        """This canal and the one that follows it as one; see `canal.editing.join`."""
+        from canal.editing import join
+
+        return join(self, following)
+
+    def add_demonstration(self, demonstration: Demonstration) -> CanalSurface:
+        """This canal with one more demonstration; the recorded old ones are not needed."""
+        from canal.editing import add_demonstration
+
+        return add_demonstration(self, demonstration)
 
     def with_(self, **changes) -> CanalSurface:
         """A copy with some fields replaced."""

@@ -1,0 +1,180 @@
+"""Canals from canals: in reverse, cut, joined to another, with one demonstration more."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from scipy.interpolate import CubicHermiteSpline, CubicSpline
+from scipy.optimize import linear_sum_assignment
+
+from canal.alignment import align_to, sample
+from canal.demonstration import Demonstration
+from canal.errors import InputError
+from canal.learning import N_POINTS, LearningOptions, build_surface, disk_count, unit_tangents
+from canal.refinement import SupportPlane
+from canal.splines import arc_length, fit_spline, knots_every, rotation_curve, slerp, uniform_in_arc
+from canal.surface import CanalSurface
+from canal.trimming import trim
+
+LARGEST_GAP_M = 0.1  # between canals that are joined; a wider one is a motion nobody has shown
+_BRIDGE_SHARE = 0.08  # of the shorter canal, given up on either side of a joint for a smooth passage
+_KNOTS = 0.1  # h, as in learning
+
+
+def reverse(canal: CanalSurface) -> CanalSurface:
+    """The canal from place to pick: the same disks and correction axes, tangents and normals turned round."""
+    flipped = ("directrix", "radii", "x_axes", "y_axes", "orientations", "orientation_sd", "orientation_weights")
+    changes = {name: getattr(canal, name)[::-1] for name in flipped}
+    changes |= {name: -getattr(canal, name)[::-1] for name in ("tangents", "normals")}
+    changes |= {name: getattr(canal, name)[:, ::-1] for name in ("demonstrations", "demonstration_orientations")}
+    if canal.ellipses is not None:
+        changes["ellipses"] = canal.ellipses[::-1]
+    return canal.with_(**changes)
+
+
+def cut(canal: CanalSurface, first: float, last: float) -> CanalSurface:
+    """The part of a canal between two continuous disks, with its own disks, home and moving time.
+
+    Raises:
+        InputError: the disks are out of range or in the wrong order.
+    """
+    end = canal.n_disks - 1
+    if not (first >= 0 and first + 2 <= last <= end):
+        raise InputError(f"cut from disk {first:g} to {last:g}; give 0 ≤ first, first + 2 ≤ last ≤ {end}")
+    keep = np.unique(np.concatenate([[first], np.arange(math.ceil(first), math.floor(last) + 1), [last]]))
+    share = (canal.arc[-1] / end * (last - first)) / canal.length
+    return rebuild(
+        canal,
+        np.stack([sample(curve, keep) for curve in canal.demonstrations]),
+        np.stack([_unit(sample(turned, keep)) for turned in canal.demonstration_orientations]),
+        moving_time_s=canal.moving_time_s * share,
+        source=keep,
+    )
+
+
+def join(first: CanalSurface, second: CanalSurface) -> CanalSurface:
+    """Two canals, one after the other, as one with a smooth passage.
+
+    Demonstrations are paired by where they end and begin; where their numbers differ, each is taken as often as it
+    takes. Near the joint both give way to a bridge that takes over their directions.
+
+    Raises:
+        InputError: the second does not begin where the first ends.
+    """
+    gap = float(np.linalg.norm(second.directrix[0] - first.directrix[-1]))
+    if gap > LARGEST_GAP_M:
+        raise InputError(
+            f"the second canal begins {1e3 * gap:.0f} mm from where the first ends (at most "
+            f"{1e3 * LARGEST_GAP_M:.0f}); retarget one of them to the other's end"
+        )
+    n = math.lcm(len(first.demonstrations), len(second.demonstrations))
+    a, qa = _repeated(first, n)
+    b, qb = _repeated(second, n)
+    apart = np.linalg.norm(a[:, None, -1] - b[None, :, 0], axis=2)
+    order = linear_sum_assignment(apart**2)[1]
+    b, qb = b[order], qb[order]
+    qb = qb * np.where(np.sum(qa[:, -1] * qb[:, 0], axis=1) < 0, -1.0, 1.0)[:, None, None]
+
+    reach = max(_BRIDGE_SHARE * min(first.length, second.length), gap)
+    i = min(int(np.searchsorted(first.arc, first.length - reach)), first.n_disks - 3)
+    j = max(int(np.searchsorted(second.arc, reach)), 2)
+    spacing = first.length / (first.n_disks - 1)
+    steps = max(8, math.ceil((2 * reach + gap) / spacing))
+    t = np.linspace(0.0, 1.0, steps + 1)[1:-1]
+    chord = np.linalg.norm(b[:, j] - a[:, i], axis=1)[:, None]
+    start = unit_tangents(a[:, i] - a[:, i - 1]) * chord
+    end = unit_tangents(b[:, j + 1] - b[:, j]) * chord
+    bridges = [
+        CubicHermiteSpline([0.0, 1.0], [p, q], [u, v])(t)
+        for p, q, u, v in zip(a[:, i], b[:, j], start, end, strict=True)
+    ]
+    turns = [
+        slerp(np.tile(p, (len(t), 1)), np.tile(q, (len(t), 1)), t) for p, q in zip(qa[:, i], qb[:, j], strict=True)
+    ]
+    return rebuild(
+        first,
+        np.concatenate([a[:, : i + 1], np.stack(bridges), b[:, j:]], axis=1),
+        np.concatenate([qa[:, : i + 1], np.stack(turns), qb[:, j:]], axis=1),
+        moving_time_s=first.moving_time_s + second.moving_time_s,
+        support_planes=tuple(dict.fromkeys(first.support_planes + second.support_planes)),
+    )
+
+
+def add_demonstration(canal: CanalSurface, demonstration: Demonstration) -> CanalSurface:
+    """A canal with one more demonstration, aligned to its directrix; the recorded old ones are not needed.
+
+    Raises:
+        InputError: the demonstration does not move, or runs from place to pick.
+    """
+    motion = trim(demonstration, N_POINTS)
+    disks = np.linspace(0, canal.n_disks - 1, N_POINTS)
+    warp = align_to(sample(canal.directrix, disks), motion)
+    knots, at = knots_every(_KNOTS), np.linspace(0.0, 1.0, canal.n_disks)
+    position = fit_spline(knots, sample(motion.position, warp), interpolate=False)(at)
+    turned = sample(motion.orientation, warp[np.round(knots * (N_POINTS - 1)).astype(int)])
+    n = len(canal.demonstrations)
+    return rebuild(
+        canal,
+        np.concatenate([canal.demonstrations, position[None]]),
+        np.concatenate([canal.demonstration_orientations, rotation_curve(knots, _unit(turned), at)[None]]),
+        moving_time_s=(n * canal.moving_time_s + motion.moving_time) / (n + 1),
+        source=np.arange(canal.n_disks, dtype=float),
+    )
+
+
+def rebuild(
+    canal: CanalSurface,
+    positions: np.ndarray,
+    quaternions: np.ndarray,
+    *,
+    moving_time_s: float,
+    source: np.ndarray | None = None,
+    support_planes: tuple[SupportPlane, ...] | None = None,
+) -> CanalSurface:
+    """A canal around aligned demonstrations, with disks uniform in the arc of their mean.
+
+    Args:
+        canal: whose options (x_G, planes, ellipses, wider radii) are carried over.
+        positions: aligned, at any spacing. Shape (n, M, 3).
+        quaternions: unit, sign-continuous. Shape (n, M, 4).
+        moving_time_s: of the new canal, [s].
+        source: disks of `canal` that the M points come from, to carry over what its radii hold beyond the data.
+        support_planes: instead of the canal's.
+    """
+    m = positions.shape[1]
+    steps = np.linalg.norm(np.diff(positions.mean(axis=0), axis=0), axis=1)
+    along = np.concatenate([[0.0], np.cumsum(np.maximum(steps, 1e-12))])
+    u = along / along[-1]
+    curves = [CubicSpline(u, curve) for curve in positions]
+    mean = CubicSpline(u, positions.mean(axis=0))
+    u_arc = arc_length(mean)
+    at = uniform_in_arc(mean, disk_count(u_arc[1][-1]), u_arc)
+    place = np.interp(at, u, np.arange(m, dtype=float))
+    widening: np.ndarray | float = 0.0
+    if source is not None:
+        ball = np.linalg.norm(canal.demonstrations - canal.directrix, axis=2).max(axis=0)
+        beyond = np.interp(source, np.arange(canal.n_disks), np.maximum(canal.radii - ball, 0.0))
+        widening = np.interp(place, np.arange(m), beyond)
+    x, y, z = canal.x_global.tolist()
+    return build_surface(
+        np.stack([curve(at) for curve in curves]),
+        np.stack([_unit(sample(turned, place)) for turned in quaternions]),
+        tangents=unit_tangents(mean(at, 1)),
+        moving_time_s=moving_time_s,
+        options=LearningOptions(
+            x_global=(x, y, z),
+            ellipse=canal.ellipses is not None,
+            support_planes=canal.support_planes if support_planes is None else support_planes,
+        ),
+        widening=widening,
+    )
+
+
+def _repeated(canal: CanalSurface, n: int) -> tuple[np.ndarray, np.ndarray]:
+    times = n // len(canal.demonstrations)
+    return np.tile(canal.demonstrations, (times, 1, 1)), np.tile(canal.demonstration_orientations, (times, 1, 1))
+
+
+def _unit(rows: np.ndarray) -> np.ndarray:
+    return rows / np.linalg.norm(rows, axis=1, keepdims=True)

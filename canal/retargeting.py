@@ -1,0 +1,156 @@
+"""A learned canal moved to new end poses: the machine stands elsewhere, the basket is lower."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike
+from scipy.spatial.transform import Rotation, Slerp
+
+from canal.editing import rebuild
+from canal.errors import InputError
+from canal.quality import angles, canal_quality, curvature
+from canal.refinement import SupportPlane
+from canal.surface import CanalSurface
+
+_EVEN = 0.05  # share of the length over which curvature is averaged when shapes are compared
+WARN_CURVATURE = 1.5  # times the old
+
+
+@dataclass(frozen=True)
+class ShapeCost:
+    """What bending a canal to new ends has cost in shape.
+
+    Attributes:
+        curvature_ratio: largest curvature (over 5 % of the length) after, relative to before.
+        length_ratio: length after, relative to before.
+        stretch_max: largest local stretch or shrinkage of the directrix, as a ratio ≥ 1.
+        turn_max_deg: largest turn of a tangent, [°].
+        moved_max_m: largest displacement of a disk, [m].
+        n_crossing: neighbouring disks that cross, after.
+    """
+
+    curvature_ratio: float
+    length_ratio: float
+    stretch_max: float
+    turn_max_deg: float
+    moved_max_m: float
+    n_crossing: int
+
+    def __str__(self) -> str:
+        return (
+            f"curvature × {self.curvature_ratio:.2f}, length × {self.length_ratio:.2f}, locally × "
+            f"{self.stretch_max:.2f} at most, turned by {self.turn_max_deg:.0f}° and moved by "
+            f"{1e3 * self.moved_max_m:.0f} mm at most, {self.n_crossing} disks cross"
+        )
+
+
+def retarget(
+    canal: CanalSurface,
+    pick: ArrayLike | tuple[ArrayLike, ArrayLike] | None = None,
+    place: ArrayLike | tuple[ArrayLike, ArrayLike] | None = None,
+    support_planes: tuple[SupportPlane, ...] | None = None,
+) -> CanalSurface:
+    """Bend a canal so that it begins and ends at new poses.
+
+    Laplacian editing with turning differentials: between the ends the canal's steps are turned by a rotation that
+    passes smoothly from the pick's to the place's, and what is then missing at the end is made up by the
+    displacement that bends least (a cubic of the arc that starts and ends level). If both ends move as one body the
+    canal moves as that body, exactly. Demonstrations keep their offsets, so radii and spread of orientations are
+    carried along; frames are made anew, since x_G is the person's and stays.
+
+    Args:
+        canal: learned.
+        pick: X_BT of the new first pose: 7 numbers (position [m], quaternion w, x, y, z), or a pair of them, or a
+            position alone, which keeps the orientation; None keeps the pose.
+        place: of the last pose, likewise.
+        support_planes: where the tables and walls are now; None keeps them.
+
+    Returns:
+        The canal; see `shape_cost` for what it costs. A cost that is high is among its warnings.
+
+    Raises:
+        InputError: a pose that is not finite, or a centre beyond a support plane.
+    """
+    c = canal.directrix
+    first, turn_first = _target(pick, "pick", c[0], canal.orientations[0])
+    last, turn_last = _target(place, "place", c[-1], canal.orientations[-1])
+    x = canal.arc / canal.length
+    smooth = x * x * (3.0 - 2.0 * x)
+    turns = Slerp([0.0, 1.0], Rotation.concatenate([turn_first, turn_last]))(smooth)
+    middle = Slerp([0.0, 1.0], Rotation.concatenate([turn_first, turn_last]))(0.5 * (smooth[1:] + smooth[:-1]))
+    centres = first + np.concatenate([np.zeros((1, 3)), np.cumsum(middle.apply(np.diff(c, axis=0)), axis=0)])
+    centres = centres + smooth[:, None] * (last - centres[-1])
+
+    positions = np.stack([centres + turns.apply(curve - c) for curve in canal.demonstrations])
+    quaternions = np.stack([_turned(turns, q) for q in canal.demonstration_orientations])
+    length = float(np.sum(np.linalg.norm(np.diff(centres, axis=0), axis=1)))
+    bent = rebuild(
+        canal,
+        positions,
+        quaternions,
+        moving_time_s=canal.moving_time_s * length / canal.length,
+        source=np.arange(canal.n_disks, dtype=float),
+        support_planes=support_planes,
+    )
+    old_weights = np.interp(
+        np.linspace(0, 1, bent.n_disks), np.linspace(0, 1, canal.n_disks), canal.orientation_weights
+    )
+    cost = shape_cost(canal, bent)
+    warnings = bent.warnings
+    if cost.curvature_ratio > WARN_CURVATURE:
+        warnings += (f"bent to its new ends at a cost: {cost}",)
+    return bent.with_(orientation_weights=old_weights, warnings=warnings)
+
+
+def shape_cost(before: CanalSurface, after: CanalSurface) -> ShapeCost:
+    """Compare a canal with what it was bent into."""
+    u = np.linspace(0.0, 1.0, 401)
+    old, new = (_at(u, canal.arc / canal.length, canal.directrix) for canal in (before, after))
+    tangent_old, tangent_new = (_at(u, canal.arc / canal.length, canal.tangents) for canal in (before, after))
+    tangent_old /= np.linalg.norm(tangent_old, axis=1, keepdims=True)
+    tangent_new /= np.linalg.norm(tangent_new, axis=1, keepdims=True)
+    stretch = np.linalg.norm(np.diff(new, axis=0), axis=1) / np.linalg.norm(np.diff(old, axis=0), axis=1)
+    return ShapeCost(
+        curvature_ratio=_peak_curvature(after) / max(_peak_curvature(before), 1e-9),
+        length_ratio=after.length / before.length,
+        stretch_max=float(np.exp(np.abs(np.log(stretch)).max())),
+        turn_max_deg=float(angles(tangent_old, tangent_new).max()),
+        moved_max_m=float(np.linalg.norm(new - old, axis=1).max()),
+        n_crossing=canal_quality(after).n_crossing,
+    )
+
+
+def _peak_curvature(canal: CanalSurface) -> float:
+    """Largest curvature, averaged over 5 % of the length, [1/m]."""
+    width = max(1, round(_EVEN * canal.n_disks))
+    return float(np.convolve(curvature(canal), np.full(width, 1.0 / width), mode="valid").max())
+
+
+def _target(pose, name: str, position: np.ndarray, quaternion: np.ndarray) -> tuple[np.ndarray, Rotation]:
+    """New position, and the rotation from the old orientation to the new one."""
+    if pose is None:
+        return position, Rotation.identity()
+    parts = pose if isinstance(pose, tuple) and len(pose) == 2 else (pose,)
+    try:
+        numbers = np.concatenate([np.asarray(part, dtype=float).ravel() for part in parts])
+    except (TypeError, ValueError):
+        numbers = np.empty(0)
+    if numbers.size not in (3, 7) or not np.isfinite(numbers).all():
+        raise InputError(f"{name} pose {pose}; give 3 finite numbers [m], or 7 with a quaternion w, x, y, z")
+    if numbers.size == 3:
+        return numbers, Rotation.identity()
+    norm = np.linalg.norm(numbers[3:])
+    if not 0.5 < norm < 2.0:
+        raise InputError(f"{name} pose has a quaternion of norm {norm:.3g}; it must be unit, w, x, y, z")
+    old = Rotation.from_quat(quaternion, scalar_first=True)
+    return numbers[:3], Rotation.from_quat(numbers[3:], scalar_first=True) * old.inv()
+
+
+def _turned(turns: Rotation, quaternions: np.ndarray) -> np.ndarray:
+    return (turns * Rotation.from_quat(quaternions, scalar_first=True)).as_quat(scalar_first=True)
+
+
+def _at(at: np.ndarray, grid: np.ndarray, rows: np.ndarray) -> np.ndarray:
+    return np.column_stack([np.interp(at, grid, column) for column in rows.T])
