@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import sys
+from collections.abc import Sequence
 from pathlib import Path
+from typing import NoReturn
 
 from tqdm import tqdm
 
@@ -24,10 +26,10 @@ from geosacs_drake.summary import describe, summarize, write_summary
 from models import MODELS
 
 
-def main(task: str) -> None:
-    """Run a task from the command line, and leave with its exit status."""
+def main(task: str, arguments: Sequence[str] | None = None) -> NoReturn:
+    """Run a task as the command line says (or `arguments`), and leave with its exit status."""
     prog = f"run_{task}"
-    end(lambda: run(parse_options(RunOptions, prog), task), prog)
+    end(lambda: run(parse_options(RunOptions, prog, arguments), task), prog)
 
 
 def run(options: RunOptions, task: str) -> ExitStatus:
