@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Literal
 
 from pydrake.geometry import Meshcat, MeshcatVisualizer, MeshcatVisualizerParams
@@ -10,6 +11,7 @@ from pydrake.systems.framework import Diagram, DiagramBuilder, OutputPort
 from pydrake.systems.primitives import ZeroOrderHold
 
 from canal.surface import CanalSurface
+from diagrams.cameras import VideoRecorder
 from diagrams.canal_view import CanalView
 from diagrams.ik_solver import IkSolver
 from diagrams.ik_system import OrientationWeightedIk
@@ -22,6 +24,7 @@ from diagrams.monitor import Monitor
 from diagrams.navigator import CanalNavigator
 from diagrams.operator import SimulatedOperator
 from diagrams.operator_policy import PERIOD
+from diagrams.reach import reach_report
 from diagrams.run_log import RunLog
 from diagrams.scenario import Scenario
 from diagrams.soft_view import SoftView
@@ -40,6 +43,7 @@ class SharedAutonomy:
     selector: JoystickSelector
     log: RunLog
     start: StartPosture
+    video: VideoRecorder | None = None
 
 
 def build_shared_autonomy(
@@ -50,6 +54,7 @@ def build_shared_autonomy(
     seed: int = 0,
     meshcat: Meshcat | None = None,
     recording: bool = False,
+    video: Path | None = None,
 ) -> SharedAutonomy:
     """Wire a scenario and a canal into a diagram.
 
@@ -65,6 +70,7 @@ def build_shared_autonomy(
         seed: of where the things lie and of the simulated operator's errors.
         meshcat: where to show it; None for no pictures.
         recording: whether Meshcat's animation is being recorded.
+        video: film the room and the gripper's view for this file; saved by `SharedAutonomy.video`.
 
     Raises:
         InputError: the scenario's things overlap, or the arm cannot reach the canal's home.
@@ -142,6 +148,7 @@ def build_shared_autonomy(
             X_BT=measured["X_BT"],
             options=scenario.navigation,
             X_WB=station.X_WB,
+            disk_colors=reach_report(solver, canal, start, rings=2, spokes=6, most_disks=61).colors(),
         )
     log = RunLog(
         builder,
@@ -156,9 +163,10 @@ def build_shared_autonomy(
         | {name: measured[name] for name in ("q", "X_BT", "gripper_state", "contact_forces", "item_poses")},
         period,
     )
+    recorder = None if video is None else VideoRecorder.AddToBuilder(builder=builder, station=station, path=video)
     diagram = builder.Build()
     diagram.set_name("shared_autonomy")
-    return SharedAutonomy(diagram, station, navigator, ik, monitor, selector, log, start)
+    return SharedAutonomy(diagram, station, navigator, ik, monitor, selector, log, start, recorder)
 
 
 def _show(builder: DiagramBuilder, station: LioStation, meshcat: Meshcat, recording: bool) -> None:

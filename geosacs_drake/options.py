@@ -40,7 +40,7 @@ class RunOptions:
     record: Path | None = None
     """Write a page here (.html) that replays the run with no network."""
     video: Path | None = None
-    """Write a film here (.gif), seen from a fixed camera."""
+    """Write a film here (.gif, or .mp4 where ffmpeg is), seen from the room, with the gripper's view inset."""
     port: int | None = None
     """Port of the page on localhost. Default: the first free one from 7000 on."""
 

@@ -53,6 +53,7 @@ def run(options: RunOptions, task: str) -> ExitStatus:
         seed=options.seed,
         meshcat=meshcat,
         recording=options.record is not None,
+        video=options.video,
     )
     if meshcat is not None and not options.headless:
         print(f"watch and steer at {meshcat.web_url()}", flush=True)
@@ -74,6 +75,8 @@ def run(options: RunOptions, task: str) -> ExitStatus:
         write_npz(options.log, **named_signals(result.signals))
     if recording is not None and options.record is not None:
         recording.save(options.record)
+    if system.video is not None:
+        system.video.save()
     status = ExitStatus.DONE if summary["success"] else ExitStatus.NOT_DONE
     leave(status, meshcat)
 
