@@ -15,6 +15,11 @@ from canal.refinement import SupportPlane
 from canal.surface import CanalSurface
 
 _EVEN = 0.05  # share of the length over which curvature is averaged when shapes are compared
+_MODES = 4
+_STRETCH_PRICE = 20.0  # μ: at 1 the shortest ways come out crushed, at 100 every way comes out as long as it was
+_MOST_STEPS = 40
+_LONGEST_STEP = 0.5  # [rad]
+_TINY = 1e-6
 WARN_CURVATURE = 1.5  # times the old
 
 
@@ -54,11 +59,12 @@ def retarget(
 ) -> CanalSurface:
     """Bend a canal so that it begins and ends at new poses.
 
-    Laplacian editing with turning differentials: between the ends the canal's steps are turned by a rotation that
-    passes smoothly from the pick's to the place's, and what is then missing at the end is made up by the
-    displacement that bends least (a cubic of the arc that starts and ends level). If both ends move as one body the
-    canal moves as that body, exactly. Demonstrations keep their offsets, so radii and spread of orientations are
-    carried along; frames are made anew, since x_G is the person's and stays.
+    The canal's steps are turned by a rotation that passes smoothly from the pick's to the place's; what is then
+    missing at the end is made up by a field of small rotations, none at the ends, and one stretch of the whole,
+    that together cost least. (Laplacian editing, which displaces points instead of turning steps, crushes whatever
+    lies across the displacement: its curvature doubled where this one's grows by 1.4.) If both ends move as one
+    body the canal moves as that body, exactly. Demonstrations keep their offsets, so radii and spread of
+    orientations are carried along; frames are made anew, since x_G is the person's and stays.
 
     Args:
         canal: learned.
@@ -76,14 +82,18 @@ def retarget(
     c = canal.directrix
     first, turn_first = _target(pick, "pick", c[0], canal.orientations[0])
     last, turn_last = _target(place, "place", c[-1], canal.orientations[-1])
+    between = Slerp([0.0, 1.0], Rotation.concatenate([turn_first, turn_last]))
     x = canal.arc / canal.length
-    smooth = x * x * (3.0 - 2.0 * x)
-    turns = Slerp([0.0, 1.0], Rotation.concatenate([turn_first, turn_last]))(smooth)
-    middle = Slerp([0.0, 1.0], Rotation.concatenate([turn_first, turn_last]))(0.5 * (smooth[1:] + smooth[:-1]))
-    centres = first + np.concatenate([np.zeros((1, 3)), np.cumsum(middle.apply(np.diff(c, axis=0)), axis=0)])
-    centres = centres + smooth[:, None] * (last - centres[-1])
+    middle = 0.5 * (x[1:] + x[:-1])
+    steps = between(_level(middle)).apply(np.diff(c, axis=0))
+    bending, log_stretch = _least_bending(middle, steps, last - first)
+    steps = np.exp(log_stretch) * _bend(middle, bending).apply(steps)
+    centres = first + np.concatenate([np.zeros((1, 3)), np.cumsum(steps, axis=0)])
+    centres = centres + _level(x)[:, None] * (last - centres[-1])  # what is too far for bending alone
+    turns = between(_level(x))
+    offsets = _bend(x, bending) * turns
 
-    positions = np.stack([centres + turns.apply(curve - c) for curve in canal.demonstrations])
+    positions = np.stack([centres + offsets.apply(curve - c) for curve in canal.demonstrations])
     quaternions = np.stack([_turned(turns, q) for q in canal.demonstration_orientations])
     length = float(np.sum(np.linalg.norm(np.diff(centres, axis=0), axis=1)))
     bent = rebuild(
@@ -102,6 +112,47 @@ def retarget(
     if cost.curvature_ratio > WARN_CURVATURE:
         warnings += (f"bent to its new ends at a cost: {cost}",)
     return bent.with_(orientation_weights=old_weights, warnings=warnings)
+
+
+def _level(x: np.ndarray) -> np.ndarray:
+    """From 0 to 1, starting and ending level."""
+    return x * x * (3.0 - 2.0 * x)
+
+
+def _bend(x: np.ndarray, bending: np.ndarray) -> Rotation:
+    """Rotations Σ_k a_k sin(kπx): none at the ends. `bending` (K, 3), [rad]."""
+    modes = np.sin(np.pi * np.outer(x, np.arange(1, len(bending) + 1)))
+    return Rotation.from_rotvec(modes @ bending)
+
+
+def _least_bending(x: np.ndarray, steps: np.ndarray, reach: np.ndarray) -> tuple[np.ndarray, float]:
+    """Bending and log-stretch of a chain of steps that reaches a point, at least ∫ |ω'|² + μ (log stretch)².
+
+    Args:
+        x: where each step is, in [0, 1]. Shape (M,).
+        steps: [m]. Shape (M, 3).
+        reach: from the first point to the last, [m]. Shape (3,).
+
+    Returns:
+        a_k, [rad], of shape (K, 3), and the logarithm of the stretch.
+    """
+    size = 3 * _MODES + 1
+    price = np.concatenate([np.repeat((np.pi * np.arange(1, _MODES + 1)) ** 2 / 2, 3), [_STRETCH_PRICE]])
+
+    def end(z: np.ndarray) -> np.ndarray:
+        return np.exp(z[-1]) * _bend(x, z[:-1].reshape(_MODES, 3)).apply(steps).sum(axis=0)
+
+    z = np.zeros(size)
+    for _ in range(_MOST_STEPS):
+        missing = reach - end(z)
+        if np.abs(missing).max() < 1e-10:
+            break
+        jacobian = np.stack([(end(z + d) - end(z - d)) / (2 * _TINY) for d in _TINY * np.eye(size)], axis=1)
+        cheap = jacobian / price
+        wanted = missing + jacobian @ z
+        better = cheap.T @ np.linalg.solve(jacobian @ cheap.T + 1e-12 * np.eye(3), wanted)
+        z = z + (better - z) * min(1.0, _LONGEST_STEP / max(float(np.abs(better - z).max()), 1e-12))
+    return z[:-1].reshape(_MODES, 3), float(z[-1])
 
 
 def shape_cost(before: CanalSurface, after: CanalSurface) -> ShapeCost:
