@@ -34,6 +34,8 @@ class LearnOptions:
     """Where to write the canal (.npz)."""
     plot: Path | None = None
     """Where to draw it (.png, .pdf, .svg); Bishop and correction frames go to NAME-frames beside it."""
+    reach: bool = False
+    """Say what of it the Lio reaches, and draw that to NAME-reach beside --plot or --output."""
     html: Path | None = None
     """Where to write it as a page to turn around in a browser."""
     view: bool = False
@@ -88,6 +90,8 @@ def main(options: LearnOptions) -> ExitStatus:
     if options.output is not None:
         canal.save(options.output)
         print(f"canal written to {options.output}")
+    if options.reach:
+        _show_reach(canal, options)
     if options.plot is not None or options.html is not None or options.view:
         _show(canal, [d.position for d in demonstrations], options)
     return ExitStatus.DONE
@@ -119,6 +123,18 @@ def report(canal: CanalSurface, quality: CanalQuality) -> list[str]:
         area = float(np.mean(a * b) / np.mean(canal.radii**2))
         rows.append(("ellipses", f"{100 * area:.0f} % of the circles' area"))
     return [f"{name:16}{text}" for name, text in rows] + [f"warning: {line}" for line in canal.warnings]
+
+
+def _show_reach(canal: CanalSurface, options: LearnOptions) -> None:
+    """What the Lio reaches of the canal, in words and, where there is a name for it, in a picture."""
+    from geosacs_drake.reach_plot import lio_reach, plot_reach, reach_path
+
+    reach = lio_reach(canal)
+    print("\n".join(reach.describe()))
+    beside = options.plot or (options.output and options.output.with_suffix(".png"))
+    if beside is not None:
+        plot_reach(reach_path(beside), canal, reach)
+        print(f"reach drawn to {reach_path(beside)}")
 
 
 def _show(canal: CanalSurface, recorded: Sequence[np.ndarray], options: LearnOptions) -> None:

@@ -76,7 +76,7 @@ def test_remaining_gain_is_zero_at_the_minimum_and_infinite_when_a_bound_lets_go
     program = BoxQuadraticProgram(N, [])
     H = np.diag(np.arange(1.0, 7.0))
     lower, upper = -np.ones(N), np.ones(N)
-    step, active = program.solve(H, np.array([0.5, -9.0, 0.0, 0.0, 0.0, 0.0]), lower, upper)
+    _, active = program.solve(H, np.array([0.5, -9.0, 0.0, 0.0, 0.0, 0.0]), lower, upper)
     np.testing.assert_array_equal(active, [False, True, False, False, False, False])
     slope = np.array([0.0, -7.0, 0.0, 0.0, 0.0, 0.0])
     assert program.remaining(slope) == 0.0
