@@ -45,7 +45,7 @@ def circle_angles(n: int) -> np.ndarray:
 
 
 def tube(points: np.ndarray, radius: float, sides: int = 6) -> TriangleMesh:
-    """A tube about a polyline. `points` (n ≥ 2, 3) and `radius` in metres; open at its ends, for they are tiny.
+    """A tube about a polyline. `points` (n ≥ 2, 3) and `radius` in metres; closed at its ends.
 
     Its cross-sections do not twist: each turns into the next by the smallest rotation.
     """
@@ -62,7 +62,8 @@ def tube(points: np.ndarray, radius: float, sides: int = 6) -> TriangleMesh:
             side = np.cross(tangent, np.eye(3)[np.argmin(np.abs(tangent))])
         side = side / np.linalg.norm(side)
         rings[k] = points[k] + radius * (np.cos(angles) * side + np.sin(angles) * np.cross(tangent, side))
-    return _skin(rings)
+    ends = np.repeat(points[[0, -1], None, :], sides, axis=1)
+    return _skin(np.concatenate([ends[:1], rings, ends[1:]]))
 
 
 def dashes(points: np.ndarray, radius: float, length: float, gap: float) -> TriangleMesh:
@@ -81,7 +82,7 @@ def ring(thickness: float, segments: int = 64, sides: int = 8) -> TriangleMesh:
     """A torus of radius 1 about z; `thickness` is the radius of its tube, relative to that 1."""
     around = circle_angles(segments)
     outward = np.stack([np.cos(around), np.sin(around), np.zeros(segments)], axis=1)[:, None, :]
-    turn = circle_angles(sides)[None, :, None]
+    turn = -circle_angles(sides)[None, :, None]
     return _skin(
         outward * (1 + thickness * np.cos(turn)) + thickness * np.sin(turn) * np.array([0, 0, 1.0]), closed=True
     )
@@ -94,6 +95,17 @@ def disc(segments: int = 64) -> TriangleMesh:
     j = np.arange(segments)
     faces = np.stack([np.full(segments, segments), j, (j + 1) % segments])
     return TriangleMesh(np.vstack([rim, np.zeros(3)]).T.copy(), faces.astype(np.int32))
+
+
+def bead(segments: int = 8) -> TriangleMesh:
+    """A ball of radius 1, coarse: it is seen small."""
+    latitudes = np.linspace(-np.pi / 2, np.pi / 2, segments // 2 + 1)[:, None]
+    around = circle_angles(segments)[None, :]
+    rings = np.stack(
+        np.broadcast_arrays(np.cos(latitudes) * np.cos(around), np.cos(latitudes) * np.sin(around), np.sin(latitudes)),
+        axis=-1,
+    )
+    return _skin(rings)
 
 
 def arrow(shaft: float = 0.035, head: float = 0.1, head_length: float = 0.3, sides: int = 16) -> TriangleMesh:
@@ -115,18 +127,20 @@ def disk_rims(canal: CanalSurface, disks: np.ndarray, segments: int) -> np.ndarr
     return np.array([[canal.point(disk, 1.0, phi) for phi in circle_angles(segments)] for disk in disks])
 
 
-def canal_skin(canal: CanalSurface, disks: np.ndarray, segments: int = 48) -> TriangleMesh:
+def canal_skin(canal: CanalSurface, disks: np.ndarray, segments: int = 40) -> TriangleMesh:
     """The canal's surface through the rims of `disks`; vertex k belongs to disk `disks[k // segments]`."""
     return _skin(disk_rims(canal, disks, segments))
 
 
 def canal_rings(canal: CanalSurface, disks: np.ndarray, thickness: float, segments: int = 48) -> TriangleMesh:
     """The rims of `disks` as rings whose tube has the radius `thickness` [m]."""
-    turn = circle_angles(4)[None, :, None]
+    turn = -circle_angles(4)[None, :, None]
     rings = []
     for disk, rim in zip(disks, disk_rims(canal, disks, segments), strict=True):
         outward = rim - canal.center(disk)
         outward /= np.maximum(np.linalg.norm(outward, axis=1, keepdims=True), 1e-9)
-        section = np.cos(turn) * outward[:, None, :] + np.sin(turn) * canal.normals[int(disk)]
+        # About the way that φ runs, so that the faces look outwards also where y is negated.
+        around = np.cross(canal.x_axes[int(disk)], canal.y_axes[int(disk)])
+        section = np.cos(turn) * outward[:, None, :] + np.sin(turn) * around
         rings.append(_skin(rim[:, None, :] + thickness * section, closed=True))
     return merge(rings)

@@ -31,6 +31,9 @@ POINT = Rgba(1.0, 0.35, 0.05, 1.0)
 AHEAD = Rgba(1.0, 0.60, 0.05, 1.0)
 """Colours: the canal cool, what moves on it warm, the axes as everywhere red and green."""
 
+MOST_RINGS, RING_EVERY = 97, 3
+"""The surface is drawn through this many rims at most, and every third of them as a ring."""
+
 BEAD_SPACING = 0.02
 """[m] Along the directrix, between the beads of the path ahead."""
 
@@ -110,9 +113,11 @@ class CanalView(LeafSystem):
             )
         return view
 
-    def _mesh(self, path: str, mesh: TriangleMesh, rgba: Rgba) -> None:
+    def _mesh(self, path: str, mesh: TriangleMesh, rgba: Rgba, *, closed: bool = True) -> None:
         path = f"{self._path}/{path}"
-        self._meshcat.SetTriangleMesh(path, mesh.vertices, mesh.faces, rgba)
+        # Both sides of a translucent face cost two passes, and nobody sees into a closed body.
+        side = Meshcat.SideOfFaceToRender.kFrontSide if closed else Meshcat.SideOfFaceToRender.kDoubleSide
+        self._meshcat.SetTriangleMesh(path, mesh.vertices, mesh.faces, rgba, side=side)
         self._cast_no_shadow(path)
         if rgba.a() < 1:
             self._see_through(path)
@@ -129,21 +134,21 @@ class CanalView(LeafSystem):
         canal, meshcat, path = self._canal, self._meshcat, self._path
         meshcat.Delete(path)
         meshcat.SetTransform(path, self._X_WB)
-        disks = np.unique(np.linspace(0, canal.n_disks - 1, min(canal.n_disks, 121)).astype(int))
+        disks = np.unique(np.linspace(0, canal.n_disks - 1, min(canal.n_disks, MOST_RINGS)).astype(int))
         skin = meshes.canal_skin(canal, disks)
         if self._disk_colors is None:
-            self._mesh("surface", skin, SURFACE)
+            self._mesh("surface", skin, SURFACE, closed=False)
         else:
             colors = np.repeat(np.asarray(self._disk_colors, dtype=float)[disks], len(skin.vertices.T) // len(disks), 0)
             meshcat.SetTriangleColorMesh(f"{path}/surface", skin.vertices, skin.faces, colors.T)
             meshcat.SetProperty(f"{path}/surface/<object>", "opacity", 2.5 * SURFACE.a())
             self._see_through(f"{path}/surface")
-        self._mesh("rings", meshes.canal_rings(canal, disks[::4], 0.0008), RINGS)
+        self._mesh("rings", meshes.canal_rings(canal, disks[::RING_EVERY], 0.0008), RINGS)
         self._mesh("directrix", meshes.dashes(canal.directrix, 0.0025, 0.014, 0.010), DIRECTRIX)
         lines = [meshes.tube(demonstration[disks], 0.001, 4) for demonstration in canal.demonstrations]
         self._mesh("demonstrations", meshes.merge(lines), DEMONSTRATIONS)
         self._mesh("disk/size/ring", meshes.ring(0.04), DISK)
-        self._mesh("disk/size/face", meshes.disc(), DISK_FACE)
+        self._mesh("disk/size/face", meshes.disc(), DISK_FACE, closed=False)
         self._mesh("x/size/arrow", meshes.arrow(), AXIS_X)
         self._mesh("y/size/arrow", meshes.arrow(), AXIS_Y)
         meshcat.SetObject(f"{path}/point", Sphere(0.013), POINT)

@@ -105,7 +105,7 @@ class TrailView(LeafSystem):
     def _draw(self, begun: int, points: np.ndarray, rgba: Rgba, time: float) -> None:
         path = self._piece_path(begun)
         mesh = tube(points, RADIUS)
-        self._meshcat.SetTriangleMesh(path, mesh.vertices, mesh.faces, rgba)
+        self._meshcat.SetTriangleMesh(path, mesh.vertices, mesh.faces, rgba, side=Meshcat.SideOfFaceToRender.kFrontSide)
         self._meshcat.SetProperty(f"{path}/<object>", "castShadow", False)
         if len(points) == 2:
             # A recording knows a path's last mesh from its first frame on: show it from when it was begun.

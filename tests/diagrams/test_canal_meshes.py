@@ -6,7 +6,7 @@ from canal_examples import quarter_turn
 from hypothesis import given
 from hypothesis import strategies as st
 
-from diagrams.canal_meshes import arrow, canal_rings, canal_skin, dashes, disc, disk_rims, merge, ring, tube
+from diagrams.canal_meshes import arrow, bead, canal_rings, canal_skin, dashes, disc, disk_rims, merge, ring, tube
 
 
 def edges(mesh):
@@ -21,6 +21,24 @@ def test_a_ring_is_a_closed_torus():
     assert mesh.vertices.shape[1] - len(edges(mesh)) + mesh.faces.shape[1] == 0  # Euler's number of a torus
     radius = np.hypot(*mesh.vertices[:2])
     np.testing.assert_allclose(np.hypot(radius - 1, mesh.vertices[2]), 0.1, atol=1e-12)
+
+
+def volume(mesh):
+    """Enclosed by a closed mesh; positive when its faces look outwards."""
+    a, b, c = (mesh.vertices[:, face].T for face in mesh.faces)
+    return np.einsum("ij,ij->", a, np.cross(b, c)) / 6
+
+
+def test_closed_bodies_look_outwards():
+    # Meshcat draws only the outer side of closed bodies.
+    canal = quarter_turn()
+    mirrored = canal.with_(y_axes=-canal.y_axes)
+    line = np.stack([np.linspace(0, 1, 20)] * 3, axis=1)
+    assert volume(tube(line, 0.1, 64)) == pytest.approx(np.pi * 0.01 * np.sqrt(3), rel=0.02)
+    assert volume(ring(0.1)) == pytest.approx(2 * np.pi * np.pi * 0.01, rel=0.15)
+    assert volume(bead(64)) == pytest.approx(4 / 3 * np.pi, rel=0.01)
+    for closed in (arrow(), dashes(line, 0.01, 0.1, 0.1), *(canal_rings(c, [3, 50], 0.001) for c in (canal, mirrored))):
+        assert volume(closed) > 0
 
 
 def test_a_disc_covers_the_unit_circle():
@@ -41,14 +59,15 @@ def test_a_tube_stays_at_its_radius_whatever_the_polyline(points):
     points = np.array(points)
     mesh = tube(points, 0.01, 6)
     assert np.isfinite(mesh.vertices).all()
-    distance = np.linalg.norm(mesh.vertices.T.reshape(len(points), 6, 3) - points[:, None], axis=2)
+    distance = np.linalg.norm(mesh.vertices.T.reshape(len(points) + 2, 6, 3)[1:-1] - points[:, None], axis=2)
     assert (distance <= 0.01 + 1e-9).all()
 
 
 def test_dashes_lie_on_the_line_and_leave_gaps():
     line = np.stack([np.linspace(0, 1, 50), np.zeros(50), np.zeros(50)], axis=1)
     mesh = dashes(line, 0.01, 0.06, 0.04)
-    np.testing.assert_allclose(np.hypot(*mesh.vertices[1:]), 0.01)
+    distance = np.hypot(*mesh.vertices[1:])
+    np.testing.assert_allclose(distance[distance > 1e-9], 0.01)
     assert not ((mesh.vertices[0] % 0.1 > 0.0601) & (mesh.vertices[0] % 0.1 < 0.0999)).any()
 
 
