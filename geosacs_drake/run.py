@@ -14,6 +14,7 @@ from canal.learning import LearningOptions, learn_canal
 from canal.refinement import SupportPlane
 from canal.surface import CanalSurface
 from diagrams.joystick_recording import load_recording
+from diagrams.meshcat_joystick import CONTROLS
 from diagrams.meshcat_recording import Recording
 from diagrams.meshcat_server import leave, start_meshcat
 from diagrams.run_log import named_signals
@@ -56,7 +57,7 @@ def run(options: RunOptions, task: str) -> ExitStatus:
         video=options.video,
     )
     if meshcat is not None and not options.headless:
-        print(f"watch and steer at {meshcat.web_url()}", flush=True)
+        print(f"watch and steer at {meshcat.web_url()}\n{CONTROLS}", flush=True)
     with _Bar(options) as bar:
         result = simulate(
             system,
