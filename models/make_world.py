@@ -167,7 +167,7 @@ def main() -> None:
     floor()
     basket()
     table("laundry_table", width=0.46, depth=0.70, height=0.30)
-    table("table", width=0.56, depth=0.66, height=0.42)
+    table("table", width=0.56, depth=0.66, height=0.40)
 
 
 if __name__ == "__main__":
