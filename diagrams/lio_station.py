@@ -18,6 +18,7 @@ from diagrams.lio_drive import ARM, OPEN_ANGLE, LioDrive
 from diagrams.lio_sensors import JOINTS, LioSensor
 from diagrams.scenario import Scenario
 from diagrams.scene import Scene, add_scene, check_overlaps
+from diagrams.soft_contact import prepare_for_cloth
 
 START_POSTURE = np.array([-1.62113, -1.19688, 1.27447, 0.02532, 1.48154, -0.05674])
 """[rad] (SPEC section 6)."""
@@ -61,6 +62,7 @@ class LioStation(Diagram):
             discrete_contact_approximation=contact.approximation,
             contact_model=contact.model,
             contact_surface_representation="polygon",
+            stiction_tolerance=contact.stiction_tolerance,
         )
         plant, scene_graph = AddMultibodyPlant(config, builder)
         self.plant: MultibodyPlant = plant
@@ -70,6 +72,8 @@ class LioStation(Diagram):
         lio = self.scene.lio
         set_drives(plant, lio)
         plant.set_gravity_enabled(lio, False)
+        if self.scene.soft_items:
+            prepare_for_cloth(plant=plant, scene_graph=scene_graph, robot=lio)
         plant.Finalize()
         plant.SetDefaultPositions(lio, checked_posture(plant, lio, q0))
 

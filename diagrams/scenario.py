@@ -91,6 +91,9 @@ class Contact:
     """Of the plant [s]; 10 ms is not to be trusted (grasps slip)."""
     approximation: str = "lagged"
     model: str = "hydroelastic_with_fallback"
+    stiction_tolerance: float = 1e-4
+    """Speed [m/s] below which friction holds; what is held creeps at up to this. Drake's default of 1e-3 let cloth slip
+    2 mm in 3 s."""
 
 
 @dataclass
@@ -219,6 +222,7 @@ def validate(scenario: Scenario) -> None:
     _within("contact.time_step", scenario.contact.time_step, 0.0, 0.01)
     _one_of("contact.approximation", scenario.contact.approximation, ("lagged", "similar", "sap", "tamsi"))
     _one_of("contact.model", scenario.contact.model, ("hydroelastic_with_fallback", "point"))
+    _within("contact.stiction_tolerance", scenario.contact.stiction_tolerance, 0.0, 0.1)
     _within("control_rate_hz", scenario.control_rate_hz, 0.0, 1000.0)
     for options in (scenario.navigation, scenario.operator, scenario.monitor):
         options.validate()

@@ -47,7 +47,7 @@ class SoftMaterial:
         Coulomb coefficient, static = dynamic. Drake combines two surfaces as 2 a b / (a + b).
     """
 
-    youngs_modulus: float = 2.0e4
+    youngs_modulus: float = 8.0e3
     poissons_ratio: float = 0.2
     stiffness_damping: float = 0.05
     mass_damping: float = 0.5

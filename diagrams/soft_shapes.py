@@ -115,7 +115,7 @@ def _sock(color: Rgb | None) -> SoftShape:
     tube = Tube.bent(
         np.zeros(3),
         0.20,
-        lambda s: 1.35 / (1.0 + np.exp(-(s - 0.52) * 18.0)),
+        lambda s: 0.95 / (1.0 + np.exp(-(s - 0.52) * 18.0)),
         lambda s: 0.027 + 0.004 * np.exp(-(((s - 0.52) / 0.10) ** 2)) - 0.006 * np.clip(s - 0.85, 0, 1) / 0.15,
         lambda s: 0.022 - 0.004 * s,
     )
@@ -144,7 +144,7 @@ def _tshirt(color: Rgb | None) -> SoftShape:
     body = Tube.bent(
         np.zeros(3),
         0.25,
-        lambda s: 0.5 * np.sin(2.0 * np.pi * s),
+        lambda s: 0.3 * np.sin(2.0 * np.pi * s),
         lambda s: 0.043 - 0.008 * np.sin(np.pi * s),
         lambda s: 0.033 - 0.004 * s,
     )
@@ -156,12 +156,12 @@ def _tshirt(color: Rgb | None) -> SoftShape:
         root = np.arctan2(*(body.axis[-8] - body.axis[-16])[[1, 0]])
         sleeve = Tube.bent(
             body.at(np.array(4.5 / segments), np.array(0.0), np.array(0.0)),
-            0.13,
-            lambda s, sign=sign, root=root: root + sign * (1.75 + 0.35 * s),  # type: ignore[misc]
-            lambda s: 0.030 + 0.003 * s,
+            0.1,
+            lambda s, sign=sign, root=root: root + sign * (1.6 + 0.9 * s),  # type: ignore[misc]
+            lambda s: 0.027 + 0.003 * s,
             lambda s: 0.027 - 0.003 * s,
         )
-        builder.add_branch(sections[4], sections[5], side, sleeve, (0.65, 1.0))
+        builder.add_branch(sections[4], sections[5], side, sleeve, (0.62, 1.0))
         sleeves.append(sleeve)
 
     def fold(s: np.ndarray, angle: np.ndarray) -> np.ndarray:
