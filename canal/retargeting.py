@@ -21,6 +21,7 @@ _MOST_STEPS = 40
 _LONGEST_STEP = 0.5  # [rad]
 _TINY = 1e-6
 WARN_CURVATURE = 1.5  # times the old
+WARN_STRETCH = 1.5  # or shrinkage
 
 
 @dataclass(frozen=True)
@@ -109,7 +110,7 @@ def retarget(
     )
     cost = shape_cost(canal, bent)
     warnings = bent.warnings
-    if cost.curvature_ratio > WARN_CURVATURE:
+    if cost.curvature_ratio > WARN_CURVATURE or cost.stretch_max > WARN_STRETCH:
         warnings += (f"bent to its new ends at a cost: {cost}",)
     return bent.with_(orientation_weights=old_weights, warnings=warnings)
 

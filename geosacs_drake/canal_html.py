@@ -88,6 +88,8 @@ def canal_page(
         draw(f"planes/{k}", _patch(canal, np.array(plane.normal), plane.offset), _GREY, 0.4)
     scene["/Background"].set_property("top_color", [0.95, 0.96, 0.98])
     scene["/Background"].set_property("bottom_color", [1.0, 1.0, 1.0])
+    for name in ("/Grid", "/Axes"):  # the viewer's own, which would lie at the canal's middle
+        scene[name].set_property("visible", False)
     _look_at(scene, canal)
 
     viewer = (Path(VIEWER_ROOT) / "main.min.js").read_text(encoding="utf-8")
@@ -159,4 +161,4 @@ def _look_at(scene, canal: CanalSurface) -> None:
     shift = np.eye(4)
     shift[:3, 3] = -middle
     scene.set_transform(shift)
-    scene["/Cameras/default/rotated/<object>"].set_property("position", [1.1 * size, 0.6 * size, 0.7 * size])
+    scene["/Cameras/default/rotated/<object>"].set_property("position", [0.75 * size, 0.4 * size, 0.45 * size])

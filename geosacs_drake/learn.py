@@ -66,9 +66,9 @@ def main(options: LearnOptions) -> ExitStatus:
     """
     if not options.demonstrations:
         raise InputError("no demonstrations; give two or more files, .npz or .csv")
-    for ending, output in ((".npz", options.output), (".html", options.html)):
-        if output is not None and output.suffix != ending:
-            raise InputError(f"{output}: give a name that ends in {ending}")
+    for endings, output in ((".npz", options.output), (".html", options.html), (".png .pdf .svg", options.plot)):
+        if output is not None and output.suffix not in endings.split():
+            raise InputError(f"{output}: give a name that ends in {' or '.join(endings.split())}")
     demonstrations = [load_demonstration(path) for path in options.demonstrations]
     learning = LearningOptions(
         step=options.step,
@@ -79,7 +79,7 @@ def main(options: LearnOptions) -> ExitStatus:
         x_global=options.x_global,
         support_planes=tuple(SupportPlane((a, b, c), d) for a, b, c, d in options.support_plane),
     )
-    with tqdm(total=_N_STAGES, desc="learning", delay=2.0, leave=False) as bar:
+    with tqdm(total=_N_STAGES, desc="learning", delay=2.0, leave=False, disable=None) as bar:
 
         def progress(stage: str) -> None:
             bar.set_description(stage)
