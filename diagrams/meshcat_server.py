@@ -8,14 +8,13 @@ from collections.abc import Sequence
 from typing import NoReturn
 
 import numpy as np
-from pydrake.geometry import Cylinder, Meshcat, MeshcatParams, Rgba
-from pydrake.math import RigidTransform
+from pydrake.geometry import Meshcat, MeshcatParams
 
 from canal.errors import InputError
 
-CAMERA = (2.7, -1.7, 2.0)
+CAMERA = (2.2, -1.4, 1.75)
 """[m] Where the eye stands, in the world: in front of the robot, to its right, taller than the machine."""
-TARGET = (0.05, 0.25, 0.62)
+TARGET = (0.12, 0.3, 0.5)
 """[m] What the eye looks at, in the world: the middle of the work space."""
 FIELD_OF_VIEW = 40.0
 """[deg] Vertical; Meshcat's own 75° bends what stands at the edge."""
@@ -25,7 +24,7 @@ LOWEST_PORT, HIGHEST_PORT = 1024, 65535
 
 LAMP = "/Lights/SpotLight/<object>"
 LOOK: tuple[tuple[str, str, bool | float | list[float]], ...] = (
-    # A light room with a floor: white shells and the translucent canal both stand out against it.
+    # A light room: white shells and the translucent canal both stand out against it.
     ("/Background/<object>", "top_color", [0.72, 0.80, 0.88]),
     ("/Background/<object>", "bottom_color", [0.95, 0.95, 0.94]),
     ("/Grid", "visible", False),
@@ -51,13 +50,6 @@ LOOK: tuple[tuple[str, str, bool | float | list[float]], ...] = (
     ("/Lights/PointLightPositiveX", "visible", False),
 )
 """Part of the page, its property, the value."""
-
-
-FLOOR_PATH = "/drake/floor"
-FLOOR = Rgba(0.87, 0.85, 0.81, 1.0)
-FLOOR_RADIUS = 3.5
-FLOOR_DEPTH = 0.001
-"""[m] The floor that is seen lies this far below z = 0, so that it does not flicker with what stands on it."""
 
 
 def start_meshcat(
@@ -96,8 +88,6 @@ def start_meshcat(
         which = "every port in 7000..7999 on localhost is" if port is None else f"port {port} on localhost is"
         remedy = "give a free one with --port, or end the program that listens there"
         raise InputError(f"{which} taken: {remedy}") from error
-    meshcat.SetObject(FLOOR_PATH, Cylinder(FLOOR_RADIUS, 2 * FLOOR_DEPTH), FLOOR)
-    meshcat.SetTransform(FLOOR_PATH, RigidTransform([0.0, 0.0, -2 * FLOOR_DEPTH]))
     meshcat.SetCamera(Meshcat.PerspectiveCamera(fov=FIELD_OF_VIEW, aspect=1.6))
     meshcat.SetCameraPose(np.asarray(camera, dtype=float), np.asarray(target, dtype=float))
     return meshcat

@@ -18,6 +18,8 @@ CORRECTING = FIELD_NAMES.index("correcting")
 
 STEP = 0.005
 """[m] Between the points that are kept."""
+JUMP = 0.1
+"""[m] From point to point: no arm moves so fast; a new piece begins there, not joined to the last."""
 POINTS = 24
 """In a piece of the trail; only the newest piece is ever sent again."""
 PIECES = 32
@@ -88,12 +90,14 @@ class TrailView(LeafSystem):
         points = piece[3:].reshape(POINTS, 3)
         p = self._X_BT.Eval(context)[:3]
         correcting = float(self._state.HasValue(context) and self._state.Eval(context)[CORRECTING] > 0.5)
-        if not np.isfinite(p).all() or (count > 0 and np.linalg.norm(p - points[count - 1]) < STEP):
+        way = np.linalg.norm(p - points[count - 1]) if count > 0 else np.inf
+        if not np.isfinite(p).all() or way < STEP:
             return EventStatus.DidNothing()
-        if begun == 0 or count == POINTS or (correcting != correction and count > 1):
-            if count > 0:
-                points[0], count = points[count - 1], 1
-            begun += 1
+        if way > JUMP:
+            begun, count = begun + 1, 0
+        elif count == POINTS or (correcting != correction and count > 1):
+            points[0] = points[count - 1]
+            begun, count = begun + 1, 1
         points[count] = p
         count += 1
         if count > 1:

@@ -155,6 +155,10 @@ def test_the_trail_follows_the_tool_and_forgets_its_beginning(meshcat_page):
     position[:] = np.nan
     run(0.5)
     np.testing.assert_array_equal(simulator.get_context().get_discrete_state(0).value(), piece)
+    position[:] = 0, 0, 3
+    run(0.5)
+    begun, count = simulator.get_context().get_discrete_state(0).value()[:2]
+    assert (begun, count) == (piece[0] + 1, 1)  # a jump is not joined to what was
     meshcat.Flush()
     wait_until(lambda: len(seen.children("trail")) > PIECES, "the trail")
     wait_until(lambda: len(seen.visible("trail")) == PIECES, "the oldest pieces to be hidden")
