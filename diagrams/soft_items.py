@@ -51,7 +51,7 @@ class SoftMaterial:
     poissons_ratio: float = 0.2
     stiffness_damping: float = 0.05
     mass_damping: float = 0.5
-    friction: float = 1.0
+    friction: float = 0.7
     model: str = "linear_corotated"
 
 

@@ -73,8 +73,6 @@ class SoftRest:
         return active | (near & active[None, :]).any(axis=1)
 
     def _touched_by_robot(self, context: Context, low: np.ndarray, high: np.ndarray) -> np.ndarray:
-        bounds = np.array(
-            [union_bounds(e, self._plant.EvalBodyPoseInWorld(context, body)) for body, e in self._links]
-        )
+        bounds = np.array([union_bounds(e, self._plant.EvalBodyPoseInWorld(context, body)) for body, e in self._links])
         gap = np.maximum(low[:, None] - bounds[None, :, 3:], bounds[None, :, :3] - high[:, None]).max(axis=2)
         return (gap < ROBOT_NEAR).any(axis=1)

@@ -33,14 +33,15 @@ class SoftShape:
 
 @dataclass(frozen=True)
 class _Skin:
-    """How a tube is drawn: rings × sectors, folds as relative depth, colour by (s, angle)."""
+    """How a tube is drawn: rings × sectors, folds as relative depth, colour by (s, angle), what its ends show."""
 
     tube: Tube
     rings: int
     sectors: int
     fold: Callable[[np.ndarray, np.ndarray], np.ndarray]
     color: Callable[[np.ndarray, np.ndarray], np.ndarray]
-    mouth: Rgb  # colour of the end at s = 1, e.g. the dark inside of a sleeve
+    end: Callable[[np.ndarray, np.ndarray], np.ndarray]
+    """Colour of both ends by (radius, angle), radius 0 at the axis and 1 at the rim."""
 
 
 def make_shape(kind: str, color: Rgb | None = None) -> SoftShape:
@@ -71,13 +72,20 @@ def _finish(kind: str, mesh: TetMesh, skins: Sequence[_Skin], mass: float) -> So
 
 
 def _draw(skin: _Skin) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Rings along the tube, closed at both ends: points (n, 3), triangles (m, 3), colours (n, 3)."""
-    n, m = skin.rings, skin.sectors
-    s, angle = np.meshgrid(np.linspace(0.0, 1.0, n), np.arange(m) * 2.0 * np.pi / m, indexing="ij")
-    depth = skin.fold(s, angle)
-    points = skin.tube.at(s, depth * np.cos(angle), depth * np.sin(angle)).reshape(-1, 3)
-    colors = skin.color(s, angle).reshape(-1, 3)
-    ends = skin.tube.at(np.array([0.015, 0.96]), np.zeros(2), np.zeros(2))
+    """Rings along the tube, inner rings over both ends: points (n, 3), triangles (m, 3), colours (n, 3)."""
+    m = skin.sectors
+    inner = np.array(_END_RADII)
+    s = np.concatenate([np.zeros(len(inner)), np.linspace(0.0, 1.0, skin.rings), np.ones(len(inner))])
+    radius = np.concatenate([inner, np.ones(skin.rings), inner[::-1]])
+    sunk = _END_DEPTH * (1.0 - radius) * np.where(s < 0.5, 1.0, -1.0)  # the ends are a little hollow
+    grid, angle = np.meshgrid(s, np.arange(m) * 2.0 * np.pi / m, indexing="ij")
+    depth = skin.fold(grid, angle) * radius[:, None]
+    points = skin.tube.at(grid + sunk[:, None], depth * np.cos(angle), depth * np.sin(angle))
+    cap = np.broadcast_to(radius[:, None], grid.shape)
+    colors = np.where((cap < 1.0)[..., None], skin.end(cap, angle), skin.color(grid, angle))
+    middles = skin.tube.at(np.array([_END_DEPTH, 1.0 - _END_DEPTH]), np.zeros(2), np.zeros(2))
+    dots = skin.end(np.zeros(2), np.zeros(2))
+    n = len(s)
     ring, sector = (a.ravel() for a in np.meshgrid(np.arange(n - 1), np.arange(m), indexing="ij"))
     a, b = ring * m + sector, ring * m + (sector + 1) % m
     j = np.arange(m)
@@ -88,7 +96,29 @@ def _draw(skin: _Skin) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         np.stack([np.full(m, first), (j + 1) % m, j], axis=1),
         np.stack([np.full(m, last), (n - 1) * m + j, (n - 1) * m + (j + 1) % m], axis=1),
     ]
-    return np.vstack([points, ends]), np.concatenate(triangles), np.vstack([colors, colors[0], skin.mouth])
+    return (
+        np.vstack([points.reshape(-1, 3), middles]),
+        np.concatenate(triangles),
+        np.vstack([colors.reshape(-1, 3), dots]),
+    )
+
+
+_END_RADII = (0.28, 0.52, 0.76)
+_END_DEPTH = 0.03  # of the axis
+
+
+def _creases(s: np.ndarray, angle: np.ndarray, seed: int) -> np.ndarray:
+    """Wrinkles of cloth that lay in a heap: a few slanted waves, their phases from `seed`. About -1 to 1."""
+    phase = np.random.default_rng(seed).uniform(0.0, 2.0 * np.pi, 4)
+    waves = ((3.0, 17.0, 0.45), (-5.0, 23.0, 0.30), (2.0, -31.0, 0.25), (7.0, 8.0, 0.25))
+    total = np.zeros(np.broadcast(s, angle).shape)
+    for (around, along, share), start in zip(waves, phase, strict=True):
+        total += share * np.sin(around * angle + along * s + start)
+    return total
+
+
+def _plain(color: Rgb) -> Callable[[np.ndarray, np.ndarray], np.ndarray]:
+    return lambda radius, angle: np.broadcast_to(np.array(color), (*radius.shape, 3))
 
 
 def _bands(s: np.ndarray, base: Rgb, bands: Sequence[tuple[float, float, Rgb]]) -> np.ndarray:
@@ -110,7 +140,7 @@ def _mix(color: Rgb, other: Rgb, share: float) -> Rgb:
 
 
 def _sock(color: Rgb | None) -> SoftShape:
-    base = color or (0.85, 0.16, 0.20)
+    base = color or (0.74, 0.05, 0.10)
     white: Rgb = (0.95, 0.94, 0.90)
     tube = Tube.bent(
         np.zeros(3),
@@ -124,7 +154,7 @@ def _sock(color: Rgb | None) -> SoftShape:
         ribs = 0.05 * np.cos(9.0 * angle) * (s < 0.24)
         wrinkles = 0.05 * np.sin(37.0 * s + 2.0 * np.sin(angle)) * np.exp(-(((s - 0.5) / 0.16) ** 2))
         toe = np.sqrt(np.clip(1.0 - (np.clip(s - 0.86, 0.0, 1.0) / 0.16) ** 2, 0.05, 1.0))
-        return (0.95 + ribs + wrinkles) * toe
+        return (0.95 + ribs + wrinkles + 0.03 * _creases(s, angle, 1)) * toe
 
     def paint(s: np.ndarray, angle: np.ndarray) -> np.ndarray:
         stripes = [(0.25 + 0.085 * i, 0.29 + 0.085 * i, white) for i in range(3)]
@@ -135,11 +165,11 @@ def _sock(color: Rgb | None) -> SoftShape:
 
     builder = TetBuilder()
     builder.add_tube(tube, segments=6)
-    return _finish("sock", builder.mesh(), [_Skin(tube, 30, 18, fold, paint, white)], mass=0.06)
+    return _finish("sock", builder.mesh(), [_Skin(tube, 28, 18, fold, paint, _plain(white))], mass=0.06)
 
 
 def _tshirt(color: Rgb | None) -> SoftShape:
-    base = color or (0.13, 0.42, 0.72)
+    base = color or (0.05, 0.26, 0.60)
     dark, light = _mix(base, (0.0, 0.0, 0.0), 0.65), _mix(base, (1.0, 1.0, 1.0), 0.75)
     body = Tube.bent(
         np.zeros(3),
@@ -168,25 +198,25 @@ def _tshirt(color: Rgb | None) -> SoftShape:
         flare = 0.09 + 0.09 * np.exp(-s / 0.2)
         gathers = np.cos(7.0 * angle + 2.5 * np.sin(5.0 * s)) + 0.5 * np.cos(4.0 * angle - 9.0 * s + 1.0)
         collar = np.where(s > 0.9, 0.75 - 0.12 * (s - 0.9) / 0.1, 0.93)
-        return collar + flare * gathers * np.where(s > 0.9, 0.25, 1.0)
+        return collar + (flare * gathers + 0.05 * _creases(s, angle, 2)) * np.where(s > 0.9, 0.25, 1.0)
 
     def paint(s: np.ndarray, angle: np.ndarray) -> np.ndarray:
         chest = [(0.52, 0.58, light), (0.61, 0.64, light)]
         return _shade(_bands(s, base, [*chest, (0.0, 0.04, dark), (0.95, 1.0, light)]), fold(s, angle))
 
     def sleeve_fold(s: np.ndarray, angle: np.ndarray) -> np.ndarray:
-        return 0.92 + 0.07 * np.cos(5.0 * angle + 3.0 * s) + 0.03 * np.cos(3.0 * angle - 8.0 * s)
+        return 0.92 + 0.07 * np.cos(5.0 * angle + 3.0 * s) + 0.05 * _creases(s, angle, 3)
 
     def sleeve_paint(s: np.ndarray, angle: np.ndarray) -> np.ndarray:
         return _shade(_bands(s, base, [(0.9, 1.0, light)]), sleeve_fold(s, angle))
 
-    skins = [_Skin(body, 28, 24, fold, paint, dark)]
-    skins += [_Skin(tube, 12, 18, sleeve_fold, sleeve_paint, dark) for tube in sleeves]
+    skins = [_Skin(body, 26, 24, fold, paint, _plain(dark))]
+    skins += [_Skin(tube, 9, 16, sleeve_fold, sleeve_paint, _plain(dark)) for tube in sleeves]
     return _finish("tshirt", builder.mesh(), skins, mass=0.17)
 
 
 def _towel(color: Rgb | None) -> SoftShape:
-    base = color or (0.93, 0.72, 0.25)
+    base = color or (0.88, 0.55, 0.10)
     stripe, fringe = _mix(base, (0.35, 0.10, 0.05), 0.75), _mix(base, (1.0, 1.0, 1.0), 0.7)
     tube = Tube.bent(
         np.zeros(3),
@@ -199,7 +229,7 @@ def _towel(color: Rgb | None) -> SoftShape:
     def fold(s: np.ndarray, angle: np.ndarray) -> np.ndarray:
         turn = (angle - 0.7 + 0.25 * np.sin(4.0 * s)) % (2.0 * np.pi)
         seam = 0.16 * (turn / (2.0 * np.pi))  # a roll: the radius grows by one layer a turn, and steps at the free edge
-        creases = 0.035 * np.cos(6.0 * angle + 11.0 * s) + 0.03 * np.sin(25.0 * s + 3.0 * np.cos(angle))
+        creases = 0.06 * _creases(s, angle, 4)
         return 0.82 + seam + creases
 
     def paint(s: np.ndarray, angle: np.ndarray) -> np.ndarray:
@@ -207,9 +237,13 @@ def _towel(color: Rgb | None) -> SoftShape:
         bands += [(x, x + 0.05, stripe) for x in (0.10, 0.18, 0.77, 0.85)]
         return _shade(_bands(s, base, bands), fold(s, angle))
 
+    def layers(radius: np.ndarray, angle: np.ndarray) -> np.ndarray:
+        turn = (3.0 * radius + angle / (2.0 * np.pi)) % 1.0  # the roll, seen from its end
+        return np.where((turn < 0.35)[..., None], np.array(_mix(base, (0.0, 0.0, 0.0), 0.6)), np.array(base))
+
     builder = TetBuilder()
     builder.add_tube(tube, segments=7)
-    return _finish("towel", builder.mesh(), [_Skin(tube, 34, 26, fold, paint, stripe)], mass=0.30)
+    return _finish("towel", builder.mesh(), [_Skin(tube, 30, 24, fold, paint, layers)], mass=0.30)
 
 
 SOFT_KINDS: dict[str, Callable[[Rgb | None], SoftShape]] = {"sock": _sock, "tshirt": _tshirt, "towel": _towel}
