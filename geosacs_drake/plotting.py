@@ -67,8 +67,8 @@ def plot_canal(
     solid.view_init(24, -52)
     # Left and right as someone at the robot sees them: y grows to the left.
     for name, (across, up), place in (
-        ("from above", (1, 0), (0.54, 0.56, 0.44, 0.38)),
-        ("from the robot", (1, 2), (0.54, 0.13, 0.44, 0.36)),
+        ("from above", (1, 0), (0.55, 0.60, 0.43, 0.33)),
+        ("from the robot", (1, 2), (0.55, 0.14, 0.43, 0.33)),
     ):
         flat = figure.add_axes(place, aspect="equal", title=name)
         for curve, style in styled:
