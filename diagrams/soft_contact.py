@@ -1,8 +1,8 @@
 """Contact of cloth with rigid shapes that neither leaks nor hops.
 
-Where cloth meets a rigid shape, Drake presses it out along the shape's pressure field, p = depth · g, with
-g = hydroelastic modulus / half the thickness, and no dissipation. With the g = 3e8 Pa/m that suits rigid things, pieces of
-100 g hop at 5 ms and their energy grows (0.1-0.9 m/s at rest, 10-90 mm of drift in 2 s); at 3e6 Pa/m they lie still
+Where cloth meets a rigid shape, Drake presses it out along the shape's pressure field, p = g · depth, with
+g = hydroelastic modulus / half the thickness, and no dissipation. With the g = 3e8 Pa/m that suits rigid things, pieces
+of 100 g hop at 5 ms and their energy grows (0.1-0.9 m/s at rest, 10-90 mm of drift in 2 s); at 3e6 Pa/m they lie still
 (0.0001 m/s) and sink in by less than 0.1 mm of their own weight, and a step costs half as much (`bench_soft`).
 Half the thickness is also how deep cloth may be pushed before it would come out on the other side.
 """
@@ -35,7 +35,7 @@ PAD_GRADIENT = 1.0e7
 def prepare_for_cloth(*, plant: MultibodyPlant, scene_graph: SceneGraph, robot: ModelInstanceIndex) -> None:
     """Give every rigid shape the pressure gradient that suits cloth; before the plant is finalized.
 
-    Whether a shape is compliant towards rigid ones stays as it is. Shapes without a thickness (meshes) stay as they are.
+    Whether a shape is compliant towards rigid ones stays as it is. Shapes without a thickness (meshes) stay too.
     """
     inspector = scene_graph.model_inspector()
     links = {g for b in plant.GetBodyIndices(robot) for g in plant.GetCollisionGeometriesForBody(plant.get_body(b))}

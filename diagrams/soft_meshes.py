@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 
@@ -203,7 +204,7 @@ class TetBuilder:
         return [self._add(p) for p in tube.at(np.full(5, s), side, up)]
 
     def _join(self, sections: list[list[int]]) -> None:
-        for low, high in zip(sections[:-1], sections[1:], strict=True):
+        for low, high in pairwise(sections):
             for j in range(4):
                 # Sorted by index, so that the diagonal of a face is the same seen from both its prisms.
                 (a, d), (b, e), (c, f) = sorted((low[m], high[m]) for m in (0, 1 + j, 1 + (j + 1) % 4))

@@ -187,11 +187,11 @@ def _tshirt(color: Rgb | None) -> SoftShape:
         sleeve = Tube.bent(
             body.at(np.array(4.5 / segments), np.array(0.0), np.array(0.0)),
             0.1,
-            lambda s, sign=sign, root=root: root + sign * (1.6 + 0.9 * s),  # type: ignore[misc]
-            lambda s: 0.027 + 0.003 * s,
+            lambda s, sign=sign, root=root: root + sign * (1.8 + 0.7 * s),  # type: ignore[misc]
+            lambda s: 0.022 + 0.002 * s,
             lambda s: 0.027 - 0.003 * s,
         )
-        builder.add_branch(sections[4], sections[5], side, sleeve, (0.62, 1.0))
+        builder.add_branch(sections[4], sections[5], side, sleeve, (0.76, 1.0))
         sleeves.append(sleeve)
 
     def fold(s: np.ndarray, angle: np.ndarray) -> np.ndarray:
@@ -221,7 +221,7 @@ def _towel(color: Rgb | None) -> SoftShape:
     tube = Tube.bent(
         np.zeros(3),
         0.28,
-        lambda s: 0.25 * np.sin(np.pi * s + 0.4),
+        lambda s: 0.15 * np.sin(2.0 * np.pi * s),
         lambda s: 0.046 - 0.006 * np.sin(np.pi * s) ** 2,
         lambda s: 0.039 - 0.004 * np.sin(np.pi * s) ** 2,
     )

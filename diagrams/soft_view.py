@@ -11,7 +11,7 @@ from collections.abc import Sequence
 import numpy as np
 from pydrake.common.value import Value
 from pydrake.geometry import Meshcat, QueryObject, SceneGraph
-from pydrake.systems.framework import Context, DiagramBuilder, EventStatus, LeafSystem
+from pydrake.systems.framework import Context, DiagramBuilder, DiscreteValues, EventStatus, LeafSystem
 
 from diagrams.soft_items import SoftItem
 
@@ -87,7 +87,7 @@ class SoftView(LeafSystem):
     def _frame(self, context: Context) -> int:
         return round(context.get_time() / self._period)
 
-    def _update(self, context: Context, discrete_state) -> EventStatus:  # noqa: ANN001
+    def _update(self, context: Context, discrete_state: DiscreteValues) -> EventStatus:
         for i, nodes in self._moved(context):
             nodes_index, frame_index = self._drawn[i]
             discrete_state.set_value(nodes_index, nodes.ravel())
