@@ -43,14 +43,14 @@ def align(motions: list[Motion], band: float = BAND, smoothing: float = WARP_SMO
     n, m, _ = curves.shape
     identity = np.arange(m, dtype=float)
     if n == 2:
-        path = np.array(_warping_path(curves[0], curves[1], band), dtype=float)
+        path = np.array(warping_path(curves[0], curves[1], band), dtype=float)
         return _centred(_smoothed(_along(path, path.mean(axis=1), m), smoothing * m))
     warps = np.tile(identity, (n, 1))
     for _ in range(ROUNDS):
         mean = np.mean([sample(curve, warp) for curve, warp in zip(curves, warps, strict=True)], axis=0)
         found = []
         for curve in curves:
-            path = np.array(_warping_path(mean, curve, band), dtype=float)
+            path = np.array(warping_path(mean, curve, band), dtype=float)
             found.append(_along(path, path[:, 0], m)[1])
         warps = _centred(_smoothed(np.stack(found), smoothing * m))
     return warps
@@ -74,7 +74,7 @@ def align_to(
     """
     _refuse_opposite([replace(motion, position=reference, name="the canal"), motion])
     m = len(reference)
-    path = np.array(_warping_path(reference, motion.position, band), dtype=float)
+    path = np.array(warping_path(reference, motion.position, band), dtype=float)
     return _smoothed(_along(path, path[:, 0], m)[1:], smoothing * m)[0]
 
 
@@ -101,7 +101,7 @@ def _tslearn_path():
     return dtw_path_from_metric
 
 
-def _warping_path(a: np.ndarray, b: np.ndarray, band: float) -> list[tuple[int, int]]:
+def warping_path(a: np.ndarray, b: np.ndarray, band: float) -> list[tuple[int, int]]:
     """The path of pairs (i, j) from (0, 0) to (M - 1, M - 1) of least summed squared distance."""
     squared = np.round(cdist(a, b, "sqeuclidean") / _QUANTUM) * _QUANTUM
     path, _ = _tslearn_path()(

@@ -1,4 +1,4 @@
-"""The machine stands 0.25 m further on, turned by 20°, and the basket is 0.1 m lower: the canal is bent, not taught anew.
+"""The machine stands 0.25 m further on, turned by 20°, the basket is 0.1 m lower: the canal is bent, not taught anew.
 
 python examples/retarget.py [OUT.png]
 """
