@@ -52,7 +52,8 @@ if n:
 else:
     demonstrations = [load_demonstration(path) for path in sys.argv[3:]]
 canal = learn_canal(demonstrations)
-print(time.perf_counter() - start, time.process_time() - busy, resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024)
+peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024
+print(time.perf_counter() - start, time.process_time() - busy, peak)
 """
 
 
@@ -138,8 +139,6 @@ def alignment(demonstrations: list) -> list[Row]:
 
 
 def _files() -> list[Path]:
-    from benchmarks.canal_quality import MODELS, RECORDED
-
     return sorted(RECORDED.glob("*.npz")) or sorted((MODELS / "demonstrations").glob("relocation_*.npz"))
 
 

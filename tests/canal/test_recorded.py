@@ -1,0 +1,62 @@
+"""The two demonstrations of the real robot, where they lie beside the project."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from canal.demonstration import load_demonstration
+from canal.learning import LearningOptions, learn_canal
+from canal.quality import canal_quality, deviations, undershoot
+from canal.refinement import SupportPlane, dips
+from canal.relaxation import ROOM
+
+FILES = sorted((Path(__file__).parents[3] / "shared" / "demos").glob("*.npz"))
+pytestmark = pytest.mark.skipif(len(FILES) != 2, reason="the recordings are not beside the project")
+
+
+@pytest.fixture(scope="module")
+def demonstrations():
+    return [load_demonstration(path) for path in FILES]
+
+
+def test_the_canal_of_the_recordings(demonstrations):
+    canal = learn_canal(demonstrations)
+    quality = canal_quality(canal)
+    assert canal.warnings == ()
+    for demonstration, rms, most in zip(demonstrations, (0.014, 0.007), (0.040, 0.018), strict=True):
+        away = deviations(canal, demonstration.position)
+        assert np.sqrt(np.mean(away**2)) <= rms
+        assert away.max() <= most
+    assert undershoot(canal, [d.position for d in demonstrations]) <= 0.001
+    assert quality.end_share_max <= 1.15
+    assert quality.step_ratio_max <= 2
+    assert max(quality.x_turn_max, quality.y_turn_max) <= 8
+    assert quality.x_to_global_mean <= 25
+    assert quality.x_to_global_max <= 65
+    assert quality.crossing <= ROOM
+    assert quality.tilt_max <= 30
+    assert quality.tangent_error_p99 <= 1.5
+
+
+@pytest.mark.parametrize("below", [0.0, 0.005, 0.01, 0.02])
+def test_the_tables_of_the_recordings(demonstrations, below):
+    lowest = min(d.position[:, 2].min() for d in demonstrations)
+    plane = SupportPlane((0, 0, 1), lowest - below)
+    canal = learn_canal(demonstrations, LearningOptions(support_planes=(plane,)))
+    quality = canal_quality(canal)
+    assert dips(canal.directrix, canal.normals, canal.radii, plane).max() <= 1e-9
+    assert quality.crossing <= ROOM
+    assert quality.tilt_max <= 30
+
+
+def test_a_wall_beside_the_recordings_clips_points(demonstrations):
+    # The path runs alongside this wall at home, and nowhere towards it.
+    canal = learn_canal(demonstrations)
+    home = canal.home_disk
+    wall = SupportPlane((-1, 0, 0), -(canal.directrix[home, 0] + 0.5 * canal.radii[home]))
+    walled = learn_canal(demonstrations, LearningOptions(support_planes=(wall,)))
+    assert np.array_equal(walled.normals[home], canal.normals[home])
+    reach = max(walled.point(home, 1.0, phi)[0] for phi in np.arange(0, 6.3, 0.05))
+    assert reach == pytest.approx(canal.directrix[home, 0] + 0.5 * canal.radii[home], abs=1e-6)
+    assert any("clipped" in line for line in walled.warnings)
