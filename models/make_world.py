@@ -14,9 +14,11 @@ from models.sdf import Link, Material, box, cylinder, mesh, write_model
 HERE = Path(__file__).parent / "world"
 SCRIPT = "models/make_world.py"
 
-STEEL = Material(friction=0.4)
-WOOD = Material(friction=0.6)
-WICKER = Material(friction=0.6)
+STEEL = Material(friction=0.4, modulus=1e7, margin=0.004)
+"""Sheet metal and drum. With this stiffness and margin a bundle that falls into the drum at 2 m/s sinks in by 3-5 mm at
+a time step of 5 ms; without the margin by 7 mm, since it is 10 mm further a step later."""
+WOOD = Material(friction=0.6, modulus=1e7, margin=0.004)
+WICKER = Material(friction=0.6, modulus=1e7, margin=0.004)
 
 WHITE = (0.94, 0.95, 0.96)
 GREY = (0.72, 0.75, 0.78)
@@ -73,7 +75,9 @@ def washing_machine(name: str, opening: float) -> None:
     for low, high in ((0.0, DOOR_HEIGHT - inner), (DOOR_HEIGHT + inner, HEIGHT)):
         link.collision(box((2 * inner, 0.03, high - low)), STEEL, (0, 0.015, (low + high) / 2))
     # The drum: staves, and a back.
-    ring(link, DRUM_RADIUS, DRUM_RADIUS + 0.03, 0.02, DRUM_DEPTH + 0.03, sides=20)
+    # 45 mm, though less would look the same: cloth that falls 0.2 m sinks in by 13 mm in one step of 5 ms, and what is
+    # past the middle of a wall comes out on the other side.
+    ring(link, DRUM_RADIUS, DRUM_RADIUS + 0.045, 0.02, DRUM_DEPTH + 0.03, sides=20)
     reach = DRUM_RADIUS + 0.03
     link.collision(box((2 * reach, 0.03, 2 * reach)), STEEL, (0, DRUM_DEPTH + 0.015, DOOR_HEIGHT))
     # The case.

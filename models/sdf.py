@@ -22,6 +22,8 @@ class Material:
     """Hydroelastic modulus [Pa]; None: rigid. One side of each pair is compliant, so that the pressure is defined."""
     dissipation: float = 5.0
     """Hunt-Crossley dissipation [s/m]."""
+    margin: float = 0.0
+    """Speculative margin [m]: contact is foreseen from this far, so that what falls does not sink in within a step."""
     resolution: float = 0.01
     """Edge length of the contact mesh of a curved shape [m]."""
 
@@ -32,6 +34,7 @@ class Material:
             if self.modulus is None
             else "<drake:compliant_hydroelastic/>"
             f"<drake:hydroelastic_modulus>{self.modulus:g}</drake:hydroelastic_modulus>"
+            f"<drake:hydroelastic_margin>{self.margin:g}</drake:hydroelastic_margin>"
         )
         return (
             f"<drake:proximity_properties>{kind}<drake:mesh_resolution_hint>{self.resolution:g}</drake:mesh_resolution_hint>"
