@@ -44,9 +44,7 @@ def draw_layout(scenario: Scenario, seed: int) -> tuple[list[Spot], list[Spot | 
     return starts, goals
 
 
-def _draw(
-    rng: np.random.Generator, item: Item, region: Region, others: list[Spot], spacing: float, what: str
-) -> Spot:
+def _draw(rng: np.random.Generator, item: Item, region: Region, others: list[Spot], spacing: float, what: str) -> Spot:
     for _ in range(TRIES):
         shift = rng.uniform(-1, 1, 2) * region.half_widths
         yaw = np.deg2rad(rng.uniform(*region.yaw_deg))

@@ -29,8 +29,8 @@ DAMPING = (150.0, 150.0, 120.0, 60.0, 35.0, 20.0)
 """[N m s/rad]"""
 GRIP_STIFFNESS, GRIP_DAMPING = 200.0, 4.0
 """Of the gripper's drive [N m/rad], [N m s/rad]."""
-GRIP_EFFORT = 3.0
-"""[N m] of the 50 that the drive has: 24 N at the fingertips hold all that is here, and hurt nobody."""
+GRIP_EFFORT = 4.0
+"""[N m] of the 50 that the drive has: 32 N at the fingertips hold all that is here, and hurt nobody."""
 ROTOR_INERTIA = 0.02
 """Of arm drives, reflected to the joint [kg m²]: a stand-in for gears that are not published, small beside the links."""
 

@@ -220,7 +220,7 @@ def validate(scenario: Scenario) -> None:
     _one_of("task", scenario.task, TASKS)
     _numbers("robot.position", scenario.robot.position, 3)
     _within("contact.time_step", scenario.contact.time_step, 0.0, 0.01)
-    _one_of("contact.approximation", scenario.contact.approximation, ("lagged", "similar", "sap", "tamsi"))
+    _one_of("contact.approximation", scenario.contact.approximation, ("lagged", "similar", "sap"))
     _one_of("contact.model", scenario.contact.model, ("hydroelastic_with_fallback", "point"))
     _within("contact.stiction_tolerance", scenario.contact.stiction_tolerance, 0.0, 0.1)
     _within("control_rate_hz", scenario.control_rate_hz, 0.0, 1000.0)
