@@ -9,6 +9,7 @@ from pydrake.multibody.plant import ContactResults, MultibodyPlant
 from pydrake.systems.framework import BasicVector, Context, LeafSystem
 
 from diagrams.scene import Scene
+from diagrams.soft_depth import FixedBoxes
 
 
 class ContactSensor(LeafSystem):
@@ -21,7 +22,7 @@ class ContactSensor(LeafSystem):
     ```
 
     A pair's force is the sum of the magnitudes of its contacts, so that a squeeze counts too. `penetration` is the
-    deepest overlap of any rigid shape with the surroundings.
+    deepest overlap of any rigid shape, or of any node of cloth, with the surroundings.
     """
 
     def __init__(self, plant: MultibodyPlant, scene_graph: SceneGraph, scene: Scene) -> None:
@@ -37,6 +38,8 @@ class ContactSensor(LeafSystem):
         self._body: dict[GeometryId, int] = {
             g: int(plant.GetBodyFromFrameId(inspector.GetFrameId(g)).index()) for g in inspector.GetAllGeometryIds()
         }
+        self._soft = scene.soft_items
+        self._boxes = FixedBoxes(plant, inspector, [model for models in scene.things.values() for model in models])
         self._results = self.DeclareAbstractInputPort("contact_results", Value[ContactResults]())
         self._query = self.DeclareAbstractInputPort("geometry_query", Value[QueryObject]())
         self.DeclareVectorOutputPort(
@@ -66,10 +69,13 @@ class ContactSensor(LeafSystem):
         output.SetFromVector(forces)
 
     def _calc_penetration(self, context: Context, output: BasicVector) -> None:
-        overlaps = self._query.Eval(context).ComputePointPairPenetration()
+        query = self._query.Eval(context)
+        overlaps = query.ComputePointPairPenetration()
         depths = [
             o.depth
             for o in overlaps
             if self._body[o.id_A] in self._thing_of_body or self._body[o.id_B] in self._thing_of_body
         ]
+        for item in self._soft:
+            depths.append(self._boxes.depth(query.GetConfigurationsInWorld(item.geometry_id).reshape(-1, 3)))
         output.SetFromVector([max(depths, default=0.0)])

@@ -1,8 +1,8 @@
 """Lets soft pieces rest: what lies still, with nothing near that moves, is not simulated until something comes near.
 
-A resting piece is disabled in the plant (`DeformableModel.Disable`): its nodes stay where they are and it costs next to
-nothing. It is enabled again *before* anything touches it, so that no contact is missed. Which pieces rest is a parameter
-of the plant in the Context; nothing is kept here.
+A resting piece is disabled in the plant (`DeformableModel.Disable`): its nodes stay where they are and it costs next
+to nothing. It is enabled again *before* anything touches it, so that no contact is missed. Which pieces rest is a
+parameter of the plant in the Context; nothing is kept here.
 """
 
 from __future__ import annotations

@@ -44,8 +44,10 @@ class _Skin:
     """Colour of both ends by (radius, angle), radius 0 at the axis and 1 at the rim."""
 
 
-def make_shape(kind: str, color: Rgb | None = None) -> SoftShape:
+def make_shape(kind: str, color: Rgb | None = None, *, segments: int = 0) -> SoftShape:
     """Make a piece of the given kind: `sock`, `tshirt` or `towel`, in its own colour or the given one.
+
+    `segments` of the tube, twelve tetrahedra each, are as many as each kind needs unless given (a study of elements).
 
     Raises
     ------
@@ -54,7 +56,7 @@ def make_shape(kind: str, color: Rgb | None = None) -> SoftShape:
     """
     if kind not in SOFT_KINDS:
         raise InputError(f"soft item kind {kind!r} does not exist; use one of {', '.join(SOFT_KINDS)}")
-    return SOFT_KINDS[kind](color)
+    return SOFT_KINDS[kind](color, segments)
 
 
 def _finish(kind: str, mesh: TetMesh, skins: Sequence[_Skin], mass: float) -> SoftShape:
@@ -139,7 +141,7 @@ def _mix(color: Rgb, other: Rgb, share: float) -> Rgb:
     return r, g, b
 
 
-def _sock(color: Rgb | None) -> SoftShape:
+def _sock(color: Rgb | None, segments: int) -> SoftShape:
     base = color or (0.74, 0.05, 0.10)
     white: Rgb = (0.95, 0.94, 0.90)
     tube = Tube.bent(
@@ -164,11 +166,11 @@ def _sock(color: Rgb | None) -> SoftShape:
         return _shade(colors, fold(s, angle))
 
     builder = TetBuilder()
-    builder.add_tube(tube, segments=6)
+    builder.add_tube(tube, segments or 6)
     return _finish("sock", builder.mesh(), [_Skin(tube, 28, 18, fold, paint, _plain(white))], mass=0.06)
 
 
-def _tshirt(color: Rgb | None) -> SoftShape:
+def _tshirt(color: Rgb | None, segments: int) -> SoftShape:
     base = color or (0.05, 0.26, 0.60)
     dark, light = _mix(base, (0.0, 0.0, 0.0), 0.65), _mix(base, (1.0, 1.0, 1.0), 0.75)
     body = Tube.bent(
@@ -179,19 +181,19 @@ def _tshirt(color: Rgb | None) -> SoftShape:
         lambda s: 0.033 - 0.004 * s,
     )
     builder = TetBuilder()
-    segments = 6
+    segments = segments or 6
     sections = builder.add_tube(body, segments)
     sleeves = []
     for sign, side in ((1, 0), (-1, 2)):
         root = np.arctan2(*(body.axis[-8] - body.axis[-16])[[1, 0]])
         sleeve = Tube.bent(
-            body.at(np.array(4.5 / segments), np.array(0.0), np.array(0.0)),
+            body.at(np.array(1.0 - 1.5 / segments), np.array(0.0), np.array(0.0)),
             0.1,
             lambda s, sign=sign, root=root: root + sign * (1.8 + 0.7 * s),  # type: ignore[misc]
             lambda s: 0.022 + 0.002 * s,
             lambda s: 0.027 - 0.003 * s,
         )
-        builder.add_branch(sections[4], sections[5], side, sleeve, (0.76, 1.0))
+        builder.add_branch(sections[-3], sections[-2], side, sleeve, (0.76, 1.0))
         sleeves.append(sleeve)
 
     def fold(s: np.ndarray, angle: np.ndarray) -> np.ndarray:
@@ -215,7 +217,7 @@ def _tshirt(color: Rgb | None) -> SoftShape:
     return _finish("tshirt", builder.mesh(), skins, mass=0.17)
 
 
-def _towel(color: Rgb | None) -> SoftShape:
+def _towel(color: Rgb | None, segments: int) -> SoftShape:
     base = color or (0.88, 0.55, 0.10)
     stripe, fringe = _mix(base, (0.35, 0.10, 0.05), 0.75), _mix(base, (1.0, 1.0, 1.0), 0.7)
     tube = Tube.bent(
@@ -242,8 +244,8 @@ def _towel(color: Rgb | None) -> SoftShape:
         return np.where((turn < 0.35)[..., None], np.array(_mix(base, (0.0, 0.0, 0.0), 0.6)), np.array(base))
 
     builder = TetBuilder()
-    builder.add_tube(tube, segments=7)
+    builder.add_tube(tube, segments or 7)
     return _finish("towel", builder.mesh(), [_Skin(tube, 30, 24, fold, paint, layers)], mass=0.30)
 
 
-SOFT_KINDS: dict[str, Callable[[Rgb | None], SoftShape]] = {"sock": _sock, "tshirt": _tshirt, "towel": _towel}
+SOFT_KINDS: dict[str, Callable[[Rgb | None, int], SoftShape]] = {"sock": _sock, "tshirt": _tshirt, "towel": _towel}

@@ -1,0 +1,69 @@
+"""The fine surface reaches Meshcat, and a recording keeps a frame a path."""
+
+import numpy as np
+from pydrake.geometry import Meshcat, MeshcatParams
+from pydrake.math import RigidTransform
+from pydrake.multibody.plant import AddMultibodyPlant, MultibodyPlantConfig
+from pydrake.systems.analysis import Simulator
+from pydrake.systems.framework import DiagramBuilder
+
+from diagrams.soft_items import add_soft_item
+from diagrams.soft_shapes import make_shape
+from diagrams.soft_view import SoftView
+
+
+class Canvas:
+    """Stands in for Meshcat's two calls, and keeps what they were given."""
+
+    def __init__(self):
+        self.meshes: dict[str, np.ndarray] = {}
+        self.shown: list[tuple[str, bool, float]] = []
+
+    def SetTriangleColorMesh(self, *, path, vertices, faces, colors):
+        assert faces.max() < vertices.shape[1] == colors.shape[1]
+        self.meshes[path] = vertices.T
+
+    def SetProperty(self, path, name, value, time):
+        assert name == "visible"
+        self.shown.append((path, value, time))
+
+
+def falling_sock(canvas, recording, until):
+    builder = DiagramBuilder()
+    plant, scene_graph = AddMultibodyPlant(MultibodyPlantConfig(time_step=0.005), builder)
+    sock = add_soft_item(plant=plant, name="sock", shape=make_shape("sock"), X_WP=RigidTransform([0, 0, 1.0]))
+    plant.Finalize()
+    SoftView.AddToBuilder(builder=builder, scene_graph=scene_graph, items=[sock], meshcat=canvas, recording=recording)
+    diagram = builder.Build()
+    simulator = Simulator(diagram)
+    simulator.AdvanceTo(until)
+    nodes = plant.deformable_model().GetPositions(plant.GetMyContextFromRoot(simulator.get_context()), sock.body_id).T
+    return sock.shape.surface.positions(nodes)
+
+
+def test_the_surface_is_drawn_where_the_solid_is():
+    canvas = Canvas()
+    surface = falling_sock(canvas, recording=False, until=0.2)
+    assert set(canvas.meshes) == {"soft/sock"}
+    np.testing.assert_allclose(canvas.meshes["soft/sock"], surface, atol=5e-3 + 1e-3)
+
+
+def test_a_recording_shows_one_frame_at_a_time():
+    canvas = Canvas()
+    falling_sock(canvas, recording=True, until=0.5)
+    assert len(canvas.meshes) == 6  # at 0, 0.1, ... 0.5 s
+    visible: set[str] = set()
+    times = sorted({t for _, _, t in canvas.shown if t > 0.0})
+    for time in times:
+        for path, shown, when in canvas.shown:
+            if when == time:
+                (visible.add if shown else visible.discard)(path)
+        assert len(visible - {"soft/sock/0"}) == 1
+    hidden_at_start = {path for path, shown, when in canvas.shown if when == 0.0 and not shown}
+    assert hidden_at_start == set(canvas.meshes) - {"soft/sock/0"}
+
+
+def test_meshcat_takes_it():
+    meshcat = Meshcat(MeshcatParams(host="localhost"))
+    falling_sock(meshcat, recording=False, until=0.05)
+    assert meshcat.HasPath("soft/sock")
