@@ -10,7 +10,8 @@ from pydrake.systems.primitives import DiscreteTimeDelay, Multiplexer
 from canal.navigation import FIELD_NAMES, JOYSTICK_SIZE, NavigationOptions, NavigationState
 from canal.surface import CanalSurface
 from diagrams.goals import Goal
-from diagrams.operator_policy import EYE, PERIOD, OperatorOptions, OperatorPolicy, Sight
+from diagrams.operator_options import PERIOD, OperatorOptions
+from diagrams.operator_policy import EYE, OperatorPolicy, Sight
 
 STATE_SIZE = len(FIELD_NAMES)
 
@@ -55,7 +56,9 @@ class OperatorMind(LeafSystem):
         wrong = rng.normal(0.0, self._noise_m, (n, 3))
         poses[:, :3] += wrong
         bounds += np.hstack([wrong, wrong])
-        placed = [g.placed(p, b) for g, p, b in zip(self._policy.goals, poses, bounds, strict=True)]
+        # In doubt a thing hangs out: what is seen a little wrong must be inside by more than that.
+        doubt = np.repeat([-2.0, 2.0], 3) * self._noise_m
+        placed = [g.placed(p, b + doubt) for g, p, b in zip(self._policy.goals, poses, bounds, strict=True)]
         # A mark is met by the thing's origin; a crumpled thing is gripped at its middle.
         seen = [
             p[:3] if g.precise else (b[:3] + b[3:]) / 2

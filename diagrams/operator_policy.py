@@ -11,13 +11,10 @@ from enum import IntEnum
 
 import numpy as np
 
-from canal.errors import InputError
 from canal.navigation import JOYSTICK_SIZE, Leg, NavigationState, phase
 from canal.surface import CanalSurface
 from diagrams.goals import Goal
-
-PERIOD = 0.05
-"""[s] A joystick is sampled at 20 Hz (paper V-D)."""
+from diagrams.operator_options import PERIOD, OperatorOptions
 
 
 class Button(IntEnum):
@@ -48,48 +45,6 @@ class Verdict(IntEnum):
     TO_DO = 0
     DONE = 1
     GIVEN_UP = 2
-
-
-@dataclass
-class OperatorOptions:
-    """The simulated person. Times in seconds, distances in metres."""
-
-    delay_s: float = 0.25
-    """How late the person sees (a multiple of the 50 ms in which a stick is sampled)."""
-    noise_m: float = 0.003
-    """Standard deviation of where the person sees a thing, per axis."""
-    hand_noise: float = 0.08
-    """Relative standard deviation of a push of the stick, and its angle in radians."""
-    look_s: float = 0.15
-    """After a push has had its effect, how long the person looks before the next."""
-    press_s: float = 0.1
-    """How long a button is held."""
-    think_s: float = 0.4
-    """After a button, how long before anything else."""
-    aim_from: float = 0.62
-    """|d| from which the person aims: close enough to see where the path leads, still above the things."""
-    aim_until: float = 0.93
-    """|d| beyond which the fingers are among the things, and only a clear miss is worth another push."""
-    aim_tolerance_m: float = 0.006
-    """A miss smaller than this is left alone."""
-    end_tolerance_m: float = 0.015
-    """The same for a last push at the end, among the things."""
-    judge_at: float = 0.78
-    """d below which the gripper is clear of the goal, and the person judges what became of the thing."""
-    lift_m: float = 0.10
-    """Rise of the gripper after which the person checks that the thing came along."""
-    lost_m: float = 0.16
-    """A thing further than this from the gripper is not in it."""
-    tries: int = 5
-    """Attempts at one thing, and pushes at one that hangs out, before it is given up."""
-
-    def __post_init__(self) -> None:
-        self.validate()
-
-    def validate(self) -> None:
-        """Check all values (see `NavigationOptions.validate`)."""
-        if not (self.delay_s >= 0 and abs(self.delay_s / PERIOD - round(self.delay_s / PERIOD)) < 1e-9):
-            raise InputError(f"operator.delay_s is {self.delay_s}; give a multiple of {PERIOD} s")
 
 
 @dataclass(frozen=True)
@@ -207,6 +162,11 @@ class OperatorPolicy:
     def _pick(self, state: OperatorState, verdicts: np.ndarray, tries: np.ndarray, sight: Sight, time: float) -> None:
         nav = sight.navigation
         if state.thing < 0:
+            state.thing = float(self._hanging(tries, sight))
+            if state.thing >= 0:
+                tries[int(state.thing)] += 1
+                state.mode, state.aimed = Mode.PUSH, 0.0
+                return
             self._choose(state, verdicts, tries, sight)
         if state.thing < 0:
             state.mode = Mode.FINISH
@@ -231,10 +191,11 @@ class OperatorPolicy:
         canal = self.canal
         best, state.thing, state.aimed = -math.inf, -1.0, 0.0
         for i, verdict in enumerate(verdicts):
-            if verdict != Verdict.TO_DO:
+            if verdict == Verdict.GIVEN_UP:
                 continue
+            # Looked at anew each time: what lay well may have been knocked, or have rolled out.
+            verdicts[i] = Verdict.DONE if sight.placed[i] else Verdict.TO_DO
             if sight.placed[i]:
-                verdicts[i] = Verdict.DONE
                 continue
             offset = sight.positions[i] - canal.center(0.0)
             across = math.hypot(offset[0], offset[1])
@@ -275,26 +236,29 @@ class OperatorPolicy:
             state.mode = Mode.LEAVE
 
     def _leave(self, state: OperatorState, verdicts: np.ndarray, tries: np.ndarray, sight: Sight, time: float) -> None:
-        thing, d = int(state.thing), phase(self.canal, sight.navigation.disk)
-        if d > self.options.judge_at:
+        if phase(self.canal, sight.navigation.disk) > self.options.judge_at:
             return
-        if sight.placed[thing]:
-            verdicts[thing] = Verdict.DONE
-            state.thing, state.mode = -1.0, Mode.PICK
-            return
-        tries[thing] += 1
-        near = np.linalg.norm(sight.positions[thing] - self.canal.center(self.canal.n_disks - 1.0)) < NEAR_GOAL
-        if near and not self.goals[thing].precise and tries[thing] <= self.options.tries:
-            state.mode, state.aimed = Mode.PUSH, 0.0
-        else:
-            state.thing, state.mode = -1.0, Mode.PICK
+        thing = int(state.thing)
+        if not sight.placed[thing]:
+            tries[thing] += 1
+        state.thing, state.aimed = float(self._hanging(tries, sight)), 0.0
+        state.mode = Mode.PUSH if state.thing >= 0 else Mode.PICK
+
+    def _hanging(self, tries: np.ndarray, sight: Sight) -> int:
+        """A thing that is at the goal and not quite in; -1 for none."""
+        end = self.canal.center(self.canal.n_disks - 1.0)
+        for i, goal in enumerate(self.goals):
+            near = np.linalg.norm(sight.positions[i] - end) < NEAR_GOAL
+            if near and not goal.precise and not sight.placed[i] and tries[i] <= self.options.tries:
+                return i
+        return -1
 
     def _push(self, state: OperatorState, verdicts: np.ndarray, tries: np.ndarray, sight: Sight, time: float) -> None:
         """Push in what hangs out: a closed gripper, and back along the same disks (paper VI, task 2)."""
         nav = sight.navigation
         if not nav.gripper_closed:
             self._press(state, Button.GRIPPER, time)
-        elif Leg(int(nav.leg)) is Leg.PLACE_TO_HOME:
+        elif Leg(int(nav.leg)) in (Leg.PLACE_TO_HOME, Leg.HOME_TO_PICK):
             self._press(state, Button.REVERSE, time)
         elif self._aim(state, sight, sight.positions[int(state.thing)], self.canal.n_disks - 1.0, time) and nav.waiting:
             self._press(state, Button.REVERSE, time)

@@ -13,7 +13,7 @@ from canal.learning import LearningOptions
 from canal.navigation import NavigationOptions
 from diagrams.ik_options import IkOptions
 from diagrams.monitor import MonitorOptions
-from diagrams.operator_policy import OperatorOptions
+from diagrams.operator_options import OperatorOptions
 from diagrams.yaml_kinds import check_kinds
 from models import MODELS, SCENARIOS
 

@@ -23,7 +23,7 @@ from diagrams.meshcat_joystick import MeshcatJoystick
 from diagrams.monitor import Monitor
 from diagrams.navigator import CanalNavigator
 from diagrams.operator import SimulatedOperator
-from diagrams.operator_policy import PERIOD
+from diagrams.operator_options import PERIOD
 from diagrams.reach import reach_report
 from diagrams.run_log import RunLog
 from diagrams.scenario import Scenario

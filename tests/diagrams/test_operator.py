@@ -12,7 +12,7 @@ from canal.navigation import FIELD_NAMES, NavigationState
 from diagrams.goals import DrumGoal, MarkGoal
 from diagrams.navigator import CanalNavigator
 from diagrams.operator import SimulatedOperator
-from diagrams.operator_policy import OperatorOptions
+from diagrams.operator_options import OperatorOptions
 
 REACH_OF_FINGERS = 0.04
 

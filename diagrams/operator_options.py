@@ -1,0 +1,50 @@
+"""The simulated person: how late, how wrong, how patient."""
+
+from dataclasses import dataclass
+
+from canal.errors import InputError
+
+PERIOD = 0.05
+"""[s] A joystick is sampled at 20 Hz (paper V-D)."""
+
+
+@dataclass
+class OperatorOptions:
+    """The simulated person. Times in seconds, distances in metres."""
+
+    delay_s: float = 0.25
+    """How late the person sees (a multiple of the 50 ms in which a stick is sampled)."""
+    noise_m: float = 0.003
+    """Standard deviation of where the person sees a thing, per axis."""
+    hand_noise: float = 0.08
+    """Relative standard deviation of a push of the stick, and its angle in radians."""
+    look_s: float = 0.15
+    """After a push has had its effect, how long the person looks before the next."""
+    press_s: float = 0.1
+    """How long a button is held."""
+    think_s: float = 0.4
+    """After a button, how long before anything else."""
+    aim_from: float = 0.62
+    """|d| from which the person aims: close enough to see where the path leads, still above the things."""
+    aim_until: float = 0.93
+    """|d| beyond which the fingers are among the things, and only a clear miss is worth another push."""
+    aim_tolerance_m: float = 0.006
+    """A miss smaller than this is left alone."""
+    end_tolerance_m: float = 0.015
+    """The same for a last push at the end, among the things."""
+    judge_at: float = 0.78
+    """d below which the gripper is clear of the goal, and the person judges what became of the thing."""
+    lift_m: float = 0.10
+    """Rise of the gripper after which the person checks that the thing came along."""
+    lost_m: float = 0.16
+    """A thing further than this from the gripper is not in it."""
+    tries: int = 5
+    """Attempts at one thing, and pushes at one that hangs out, before it is given up."""
+
+    def __post_init__(self) -> None:
+        self.validate()
+
+    def validate(self) -> None:
+        """Check all values (see `NavigationOptions.validate`)."""
+        if not (self.delay_s >= 0 and abs(self.delay_s / PERIOD - round(self.delay_s / PERIOD)) < 1e-9):
+            raise InputError(f"operator.delay_s is {self.delay_s}; give a multiple of {PERIOD} s")
