@@ -49,8 +49,8 @@ class Task:
     name: str
     keys: Sequence[Key]
     aside: tuple[tuple[float, float, float], tuple[float, float, float]]
-    moving_time: float = 21.5
-    """Of a pass, pauses apart [s]: three things, home-pick-home-place-home, then take a little over 2 min, as in the paper."""
+    moving_time: float = 26.5
+    """Of a pass, pauses apart [s]: three things, home-pick-home-place-home, then take 140 s, as in the paper."""
 
 
 @dataclass(frozen=True)
