@@ -15,7 +15,7 @@ from canal.ellipses import FEWEST_FOR_ELLIPSES, disk_ellipses
 from canal.errors import InputError
 from canal.frames import correction_frames, perpendicular
 from canal.refinement import SupportPlane, dips, hold_at_planes
-from canal.relaxation import MAX_TILT, continuous_directions, crossings, relax_normals, tilts
+from canal.relaxation import MAX_TILT, crossings, relax_normals, reversals, tilts
 from canal.splines import arc_length, fit_spline, knots_every, rotation_curve, uniform_in_arc
 from canal.surface import CanalSurface
 from canal.trimming import trim
@@ -255,13 +255,20 @@ def _warnings(centres, tangents, normals, radii, planes) -> tuple[str, ...]:
     if bad.size:
         lines.append(
             f"neighbouring disks cross at {bad.size} places, first at disk {bad[0]}, last at {bad[-1]} of {last}: a "
-            f"hairpin tighter than the radius ({1e3 * radii[bad].max():.0f} mm)"
+            f"bend tighter than the radius ({1e3 * radii[bad].max():.0f} mm)"
         )
     tilt = tilts(normals, tangents)
-    if tilt.max() > MAX_TILT:
+    turned = np.sum(tangents[1:] * tangents[:-1], axis=1) < 0
+    for first, end in reversals(centres, tangents, radii):
+        lines.append(
+            f"the path turns back at disks {first} to {end} of {last}, within less than the radius "
+            f"({1e3 * radii[first : end + 1].max():.0f} mm): its disks do not turn over with it"
+        )
+        tilt[first : end + 1] = 0.0
+        turned[first:end] = False
+    if tilt.max() > MAX_TILT + 1e-9:
         s = int(np.argmax(tilt))
         lines.append(f"disk {s} of {last} is tilted by {np.degrees(tilt[s]):.0f}° against the path")
-    turned = np.sum(continuous_directions(tangents)[1:] * tangents[1:], axis=1) < 0
     if turned.any():
         lines.append(f"the path reverses at disk {int(np.argmax(turned)) + 1} of {last}")
     for plane in planes:

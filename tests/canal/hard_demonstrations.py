@@ -34,7 +34,7 @@ class Hardness:
 
 EASY = Hardness(False, 0.0, 0, 0.0, 0.0, 0, False, 0.1, 0.02, 5.0, 0)
 
-SHAPES = ("pick_and_place", "u_turn", "straight", "loop")
+SHAPES = ("pick_and_place", "u_turn", "straight", "loop", "hairpin")
 
 
 def _nominal(shape: str, rng: np.random.Generator) -> PchipInterpolator | CubicSpline:
@@ -48,6 +48,10 @@ def _nominal(shape: str, rng: np.random.Generator) -> PchipInterpolator | CubicS
         tilt = Rotation.from_rotvec(rng.normal(size=3) * 0.3).as_matrix()
         angle = 2 * np.pi * u
         return CubicSpline(u, [0.3, 0.0, 0.7] + np.column_stack([a * np.cos(angle), b * np.sin(angle), 0 * u]) @ tilt)
+    if shape == "hairpin":
+        out, gap = rng.uniform(0.4, 0.6), rng.uniform(0.0, 0.08)
+        there = np.column_stack([0.3 + gap * u, -out + out * (1 - np.abs(2 * u - 1)), 0.6 + 0.05 * u])
+        return PchipInterpolator(u, there)
     if shape == "u_turn":
         depth, width = rng.uniform(0.3, 0.5), rng.uniform(0.25, 0.4)
         turn = np.pi * np.clip((u - 0.35) / 0.3, 0, 1)

@@ -5,7 +5,7 @@ from hypothesis import strategies as st
 
 from canal.errors import InputError
 from canal.refinement import SupportPlane, dips, hold_at_planes
-from canal.relaxation import ROOM, continuous_directions, crossings, relax_normals, tilts
+from canal.relaxation import ROOM, continuous_directions, crossings, relax_normals, reversals, tilts
 
 
 def elbow(bend_radius, step=0.005, straight=60, angle=np.pi / 2):
@@ -45,11 +45,26 @@ def test_a_reversal_retraces_its_disks():
     assert np.array_equal(normals, np.tile([1.0, 0, 0], (100, 1)))
 
 
-def test_a_hairpin_tighter_than_the_radius_stays_crossed():
-    points, tangents = elbow(0.01, angle=np.pi, straight=20)
-    normals = relax_normals(points, tangents, np.full(len(points), 0.2))
-    assert np.isfinite(normals).all()
-    assert crossings(points, normals, np.full(len(points), 0.2)).max() > 1
+@pytest.mark.parametrize("bend", [0.005, 0.01, 0.03])
+@pytest.mark.parametrize("angle", [2.4, np.pi, 3.6])
+def test_disks_retrace_their_way_in_a_hairpin_tighter_than_the_radius(bend, angle):
+    points, tangents = elbow(bend, angle=angle, straight=40)
+    radii = np.full(len(points), 0.1)
+    assert len(reversals(points, tangents, radii)) == 1
+    normals = relax_normals(points, tangents, radii)
+    assert (np.sum(normals[1:] * normals[:-1], axis=1) > np.cos(np.radians(8))).all()
+    assert crossings(points, normals, radii).max() <= ROOM
+    assert normals[0] @ tangents[0] > 0.9
+    assert normals[-1] @ tangents[-1] < -0.9
+
+
+def test_an_elbow_tighter_than_the_radius_stays_crossed_and_its_disks_within_30_degrees():
+    points, tangents = elbow(0.02)
+    radii = np.full(len(points), 0.15)
+    assert reversals(points, tangents, radii) == []
+    normals = relax_normals(points, tangents, radii)
+    assert np.degrees(tilts(normals, tangents).max()) < 30.001
+    assert crossings(points, normals, radii).max() > 1
 
 
 def test_signs_are_continuous():
