@@ -16,6 +16,7 @@ from pydrake.multibody.tree import (
     RigidBody,
     SpatialInertia,
     UnitInertia,
+    world_model_instance,
 )
 from pydrake.systems.analysis import Simulator
 from pydrake.systems.framework import DiagramBuilder
@@ -119,7 +120,14 @@ class Rig:
             for name, shape, position, yaw in pieces
         ]
         gradients = {} if setting.gradient is None else {"surroundings": setting.gradient, "pads": setting.gradient}
-        prepare_for_cloth(plant=self.plant, scene_graph=scene_graph, robot=hand, margin=setting.margin, **gradients)
+        prepare_for_cloth(
+            plant=self.plant,
+            scene_graph=scene_graph,
+            robot=hand,
+            fallen_into=[world_model_instance()],
+            margin=setting.margin,
+            **gradients,
+        )
         self.plant.Finalize()
         builder.ExportInput(self.plant.get_desired_state_input_port(hand), "hand")
         self.diagram = builder.Build()

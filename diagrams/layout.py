@@ -34,7 +34,9 @@ def draw_layout(scenario: Scenario, seed: int) -> tuple[list[Spot], list[Spot | 
     marks: list[Spot] = []
     goals: list[Spot | None] = []
     for item in scenario.items:
-        starts.append(_draw(rng, item, item.start, starts, scenario.item_spacing, "start"))
+        soft = item.kind == "soft" and item.soft_start is not None
+        region, key = (item.soft_start, "soft_start") if soft else (item.start, "start")
+        starts.append(_draw(rng, item, region, starts, scenario.item_spacing, key))
     for item in scenario.items:
         if item.goal is None:
             goals.append(None)

@@ -73,7 +73,8 @@ class LioStation(Diagram):
         set_drives(plant, lio)
         plant.set_gravity_enabled(lio, False)
         if self.scene.soft_items:
-            prepare_for_cloth(plant=plant, scene_graph=scene_graph, robot=lio)
+            machine = self.scene.things.get("machine", [])
+            prepare_for_cloth(plant=plant, scene_graph=scene_graph, robot=lio, fallen_into=machine)
         plant.Finalize()
         plant.SetDefaultPositions(lio, checked_posture(plant, lio, q0))
 

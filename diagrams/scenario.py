@@ -65,6 +65,8 @@ class Item:
     kind: str = "rigid"
     """`rigid` or `soft`."""
     start: Region = field(default_factory=Region)
+    soft_start: Region | None = None
+    """The same for the soft one, which is longer; None: `start`."""
     goal: Region | None = None
     """Where its mark lies (relocation); without one it belongs into the drum."""
     upright: bool = False
@@ -238,6 +240,8 @@ def validate(scenario: Scenario) -> None:
         _one_of(f"items.{item.name}.kind", item.kind, KINDS)
         scenario.resolve(item.model, MODELS / "items", ".sdf")
         _region(f"items.{item.name}.start", item.start)
+        if item.soft_start is not None:
+            _region(f"items.{item.name}.soft_start", item.soft_start)
         if item.goal is not None:
             _region(f"items.{item.name}.goal", item.goal)
         elif scenario.drum is None:

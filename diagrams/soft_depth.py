@@ -36,7 +36,7 @@ class FixedBoxes:
         self._low, self._high = self._centers - reach, self._centers + reach
 
     def depth(self, points: np.ndarray) -> float:
-        """Greatest depth of `points` (n, 3), in W, below the nearest face of a box that they lie in [m]; 0 outside all."""
+        """Greatest depth of `points` (n, 3) below the nearest face of a box that they lie in [m], in W; 0 outside."""
         near = np.all((self._low < points.max(axis=0)) & (self._high > points.min(axis=0)), axis=1)
         if not near.any():
             return 0.0
