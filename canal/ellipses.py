@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import numpy as np
+from scipy.ndimage import gaussian_filter1d, maximum_filter1d
 
 FEWEST_FOR_ELLIPSES = 3  # two demonstrations lie on a line through the centre
 _ROUNDEST_SHARE = 0.1  # of the mean square, given to every direction: a thumb needs room also across the data
+_EVEN = 0.04  # share of the disks, σ of the evening out of their shapes
 _BISECTIONS = 40
 
 
@@ -28,6 +30,8 @@ def disk_ellipses(offsets: np.ndarray, x_axes: np.ndarray, y_axes: np.ndarray, r
     tiny = ball < 1e-9
     unit = points / np.where(tiny, 1.0, ball)[:, None]
     moment = np.einsum("nsi,nsj->sij", unit, unit) / len(unit)
+    reach = max(1, round(_EVEN * len(radii)))
+    moment = gaussian_filter1d(moment, reach, axis=0, mode="nearest", truncate=2.0)
     trace = np.trace(moment, axis1=1, axis2=2)
     moment = moment + (_ROUNDEST_SHARE * trace + 1e-9)[:, None, None] * np.eye(2)
     narrow = np.linalg.inv(moment)
@@ -38,7 +42,10 @@ def disk_ellipses(offsets: np.ndarray, x_axes: np.ndarray, y_axes: np.ndarray, r
         t = 0.5 * (low + high)
         fits = np.linalg.eigvalsh(_scaled(narrow, t, unit))[:, 0] >= 1.0
         low, high = np.where(fits, low, t), np.where(fits, t, high)
-    values, vectors = np.linalg.eigh(_scaled(narrow, high, unit))
+    # Rounder is allowed everywhere: an even bound from above, since a rim that jumps cannot be steered along.
+    round_enough = maximum_filter1d(high, 4 * reach + 1, mode="nearest")
+    round_enough = gaussian_filter1d(round_enough, reach, mode="nearest", truncate=2.0)
+    values, vectors = np.linalg.eigh(_scaled(narrow, np.minimum(round_enough, 1.0), unit))
     a, b = 1.0 / np.sqrt(values[:, 0]), 1.0 / np.sqrt(values[:, 1])
     angle = np.arctan2(vectors[:, 1, 0], vectors[:, 0, 0])
     angle = np.where(angle > np.pi / 2, angle - np.pi, np.where(angle <= -np.pi / 2, angle + np.pi, angle))

@@ -96,7 +96,7 @@ def test_ellipses_and_wider_radii_are_carried():
     canal = elliptic_canal()
     bent = canal.retarget(place=canal.directrix[-1] + [0.0, 0.1, -0.1])
     assert bent.ellipses is not None
-    assert bent.ellipses[-1, :2] == pytest.approx(canal.ellipses[-1, :2], abs=2e-3)
+    assert bent.ellipses[-1, :2] == pytest.approx(canal.ellipses[-1, :2], abs=8e-3)
     wide = hard_canal().with_(radii=hard_canal().radii + 0.02)
     bent = wide.retarget(pick=wide.directrix[0] + [0.05, 0, 0])
     assert bent.radii[0] == pytest.approx(wide.radii[0], abs=1e-9)
