@@ -31,11 +31,17 @@ POINT = Rgba(1.0, 0.35, 0.05, 1.0)
 AHEAD = Rgba(1.0, 0.60, 0.05, 1.0)
 """Colours: the canal cool, what moves on it warm, the axes as everywhere red and green."""
 
+COLORED_OPACITY = 0.24
+"""Of the surface when its disks have colours, which have to be told apart."""
+GLOW = 0.12
+"""Share of its colour that a marker has without any lamp."""
+
 MOST_RINGS, RING_EVERY = 97, 3
 """The surface is drawn through this many rims at most, and every third of them as a ring."""
 
 BEAD_SPACING = 0.02
-"""[m] Along the directrix, between the beads of the path ahead."""
+BEAD_RADIUS = 0.005
+"""[m] Along the directrix between the beads of the path ahead, and of a bead."""
 
 KEY_SIZE = 4
 
@@ -118,13 +124,15 @@ class CanalView(LeafSystem):
         # Both sides of a translucent face cost two passes, and nobody sees into a closed body.
         side = Meshcat.SideOfFaceToRender.kFrontSide if closed else Meshcat.SideOfFaceToRender.kDoubleSide
         self._meshcat.SetTriangleMesh(path, mesh.vertices, mesh.faces, rgba, side=side)
-        self._cast_no_shadow(path)
+        self._set_apart(path, rgba)
         if rgba.a() < 1:
             self._see_through(path)
 
-    def _cast_no_shadow(self, path: str) -> None:
-        # What is drawn into the room for explanation is not in it.
+    def _set_apart(self, path: str, rgba: Rgba) -> None:
+        # What is drawn into the room for explanation is not in it: it casts no shadow, and shines by itself.
         self._meshcat.SetProperty(f"{path}/<object>", "castShadow", False)
+        for channel, value in zip("rgb", (rgba.r(), rgba.g(), rgba.b()), strict=True):
+            self._meshcat.SetProperty(f"{path}/<object>", f"material.emissive.{channel}", GLOW * value)
 
     def _see_through(self, path: str) -> None:
         # Else a translucent face hides the translucent ones behind it.
@@ -141,7 +149,8 @@ class CanalView(LeafSystem):
         else:
             colors = np.repeat(np.asarray(self._disk_colors, dtype=float)[disks], len(skin.vertices.T) // len(disks), 0)
             meshcat.SetTriangleColorMesh(f"{path}/surface", skin.vertices, skin.faces, colors.T)
-            meshcat.SetProperty(f"{path}/surface/<object>", "opacity", 2.5 * SURFACE.a())
+            meshcat.SetProperty(f"{path}/surface/<object>", "opacity", COLORED_OPACITY)
+            meshcat.SetProperty(f"{path}/surface/<object>", "castShadow", False)
             self._see_through(f"{path}/surface")
         self._mesh("rings", meshes.canal_rings(canal, disks[::RING_EVERY], 0.0008), RINGS)
         self._mesh("directrix", meshes.dashes(canal.directrix, 0.0025, 0.014, 0.010), DIRECTRIX)
@@ -152,11 +161,12 @@ class CanalView(LeafSystem):
         self._mesh("x/size/arrow", meshes.arrow(), AXIS_X)
         self._mesh("y/size/arrow", meshes.arrow(), AXIS_Y)
         meshcat.SetObject(f"{path}/point", Sphere(0.013), POINT)
-        self._cast_no_shadow(f"{path}/point")
+        self._set_apart(f"{path}/point", POINT)
+        ball = meshes.bead()
+        ball = TriangleMesh(BEAD_RADIUS * ball.vertices, ball.faces)
         for k in range(len(self._beads)):
-            meshcat.SetObject(self._bead(int(k)), Sphere(0.005), AHEAD)
-            self._cast_no_shadow(self._bead(k))
-            meshcat.SetProperty(self._bead(int(k)), "visible", False, context.get_time())
+            self._mesh(f"ahead/{k:03d}", ball, AHEAD)
+            meshcat.SetProperty(self._bead(k), "visible", False, context.get_time())
         discrete.set_value(self._key, np.full(KEY_SIZE, np.nan))
         discrete.set_value(self._visible, np.zeros(len(self._beads)))
         return EventStatus.Succeeded()

@@ -12,9 +12,9 @@ from pydrake.geometry import Meshcat, MeshcatParams
 
 from canal.errors import InputError
 
-CAMERA = (2.2, -1.4, 1.75)
+CAMERA = (2.4, -1.5, 1.9)
 """[m] Where the eye stands, in the world: in front of the robot, to its right, taller than the machine."""
-TARGET = (0.12, 0.3, 0.5)
+TARGET = (0.12, 0.23, 0.43)
 """[m] What the eye looks at, in the world: the middle of the work space."""
 FIELD_OF_VIEW = 40.0
 """[deg] Vertical; Meshcat's own 75° bends what stands at the edge."""

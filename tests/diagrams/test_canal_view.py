@@ -20,37 +20,37 @@ class Seen:
     def __init__(self, page):
         self._page = page
 
-    def _ask(self, path, question):
+    def ask(self, path, question):
         return self._page.evaluate(
             f"(path => {{const node = viewer.scene_tree.find(path); return {question}}})", ["drake", *path.split("/")]
         )
 
     def position(self, path):
-        return np.array(self._ask(path, "node.object.position.toArray()"))
+        return np.array(self.ask(path, "node.object.position.toArray()"))
 
     def scale(self, path):
-        return np.array(self._ask(path, "node.object.scale.toArray()"))
+        return np.array(self.ask(path, "node.object.scale.toArray()"))
 
     def z_axis(self, path):
         """The z axis of a node in its parent."""
         return np.array(
-            self._ask(
+            self.ask(
                 path, "(q => [2*(q.x*q.z+q.w*q.y), 2*(q.y*q.z-q.w*q.x), 1-2*(q.x*q.x+q.y*q.y)])(node.object.quaternion)"
             )
         )
 
     def children(self, path):
-        return self._ask(path, "Object.keys(node.children)")
+        return self.ask(path, "Object.keys(node.children)")
 
     def visible(self, path):
-        return self._ask(path, "Object.keys(node.children).filter(name => node.children[name].object.visible)")
+        return self.ask(path, "Object.keys(node.children).filter(name => node.children[name].object.visible)")
 
     def geometry(self, path):
         """Identity of what is drawn there: another one after it was sent again."""
-        return self._ask(path, "node.children['<object>'].object.uuid")
+        return self.ask(path, "node.children['<object>'].object.uuid")
 
     def material(self, path, name):
-        return self._ask(path, f"node.children['<object>'].object.material.{name}")
+        return self.ask(path, f"node.children['<object>'].object.material.{name}")
 
 
 def state_of(navigator, simulator) -> NavigationState:
@@ -121,6 +121,8 @@ def test_colours_of_the_disks_and_a_base_that_stands_elsewhere(meshcat_page):
     assert seen.material("canal/surface", "vertexColors") is True
     np.testing.assert_allclose(seen.position("canal"), [1, 2, 0])
     assert 0 < seen.material("canal/surface", "opacity") < 1
+    casting = "(() => {let n = 0; node.object.traverse(one => n += one.isMesh && one.castShadow ? 1 : 0); return n})()"
+    assert seen.ask("canal", casting) == 0
 
 
 def test_a_state_that_is_not_finite_moves_nothing(meshcat):
