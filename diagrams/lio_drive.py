@@ -35,7 +35,9 @@ class LioDrive(LeafSystem):
         # The gripper's target and its rate, then the arm's last posture.
         state = self.DeclareDiscreteState(np.concatenate([[OPEN_ANGLE, 0.0], q0]))
         self._state = state
-        self.DeclareVectorOutputPort("actuator_state", 2 * (ARM + 1), self._calc)
+        # Not of time: the plant's steps between two ticks find it in the cache.
+        sources = {self.discrete_state_ticket(state), self._desired.ticket()}
+        self.DeclareVectorOutputPort("actuator_state", 2 * (ARM + 1), self._calc, sources)
         self.DeclarePeriodicDiscreteUpdateEvent(PERIOD, 0.0, self._update)
 
     def _update(self, context: Context, discrete: DiscreteValues) -> None:
