@@ -3,6 +3,7 @@
 import numpy as np
 from pydrake.multibody.plant import MultibodyPlant
 from pydrake.multibody.tree import BodyIndex, Frame, JacobianWrtVariable, Joint
+from pydrake.systems.framework import Context
 
 from canal.errors import InputError
 
@@ -13,7 +14,7 @@ class ArmKinematics:
     """Poses and Jacobians of a tool frame T in a base frame B, as functions of the joints between them.
 
     Any MultibodyPlant will do: the joints are found by walking from the tool to the base, so other degrees of freedom
-    (a gripper's, a second arm's) stay where the plant's default context has them. The context is this object's own.
+    (a gripper's, a second arm's) stay where the context has them: the plant's default one, unless one is given.
 
     Attributes:
         joint_names: names of the n joints, base first.
@@ -21,12 +22,14 @@ class ArmKinematics:
         v_max: joint speed limits [rad/s or m/s], shape (n,).
     """
 
-    def __init__(self, plant: MultibodyPlant, tool: Frame, base: Frame | None = None) -> None:
+    def __init__(
+        self, plant: MultibodyPlant, tool: Frame, base: Frame | None = None, context: Context | None = None
+    ) -> None:
         self.plant, self.tool = plant, tool
         self.base = plant.world_frame() if base is None else base
         joints = _joints_between(plant, tool, self.base)
         self.joint_names = [joint.name() for joint in joints]
-        self.context = plant.CreateDefaultContext()
+        self.context = plant.CreateDefaultContext() if context is None else context
         self._columns = np.array([joint.velocity_start() for joint in joints])
         self._positions = np.array([joint.position_start() for joint in joints])
         self._columns_used = _contiguous(self._columns)
@@ -67,6 +70,14 @@ class ArmKinematics:
             self.context, JacobianWrtVariable.kQDot, self.tool, _ORIGIN, self.base, self.base
         )
         return jacobian[:, self._columns_used]
+
+    def world_axes(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Joint rates' ω and velocity of the tool's origin, (3, n) each, and where that is, (3,), all in the world."""
+        world = self.plant.world_frame()
+        jacobian = self.plant.CalcJacobianSpatialVelocity(
+            self.context, JacobianWrtVariable.kQDot, self.tool, _ORIGIN, world, world
+        )[:, self._columns_used]
+        return jacobian[:3], jacobian[3:], self.tool.CalcPoseInWorld(self.context).translation()
 
 
 def _contiguous(indices: np.ndarray) -> slice | np.ndarray:

@@ -152,6 +152,11 @@ class BoxQuadraticProgram:
             self._masks[key] = (np.outer(free, free), np.diag(1.0 - free))
         return self._masks[key]
 
+    @property
+    def factor(self) -> np.ndarray:
+        """Cholesky factor of the last H (n, n), after a `solve` that met no bound."""
+        return self._factor
+
     def remaining(self, g: np.ndarray) -> float:
         """What one more step with the last solution's factors would gain where the gradient is g (n,): ½ gᵀH⁻¹g.
 

@@ -7,9 +7,12 @@ from typing import NamedTuple
 import numpy as np
 from pydrake.multibody.plant import MultibodyPlant
 from pydrake.multibody.tree import Frame
+from pydrake.systems.framework import Diagram
 
 from canal.errors import InputError
 from diagrams.ik_bounds import StepBounds
+from diagrams.ik_clear_step import ClearStep, minimise_clear
+from diagrams.ik_clearance import Clearance
 from diagrams.ik_kinematics import ArmKinematics
 from diagrams.ik_objective import PoseObjective
 from diagrams.ik_options import IkOptions, IkStatus
@@ -21,6 +24,7 @@ _COST_FLOOR = 1e-9
 # A target further off than this [m] pulls in the same direction, and its square stays finite.
 _FAR = 1e3
 _LEAST_QUATERNION = 1e-6
+_AT_MARGIN = 1e-5  # [m], nearer than this beyond the margin counts as at it
 _DAMPING_GROWTH = 4.0
 # In a box narrower than this [rad] the quadratic model holds throughout, also where it is not convex.
 _NARROW = 0.2
@@ -44,6 +48,8 @@ class IkResult(NamedTuple):
     """Largest excess over the tick's bounds [rad]."""
     solve_time: float
     """[s]"""
+    clearance: float = math.nan
+    """Least distance of a watched pair [m], NaN when none is watched or when held."""
 
 
 class IkSolver:
@@ -54,6 +60,7 @@ class IkSolver:
 
     Attributes:
         kinematics: the chain of joints; q_min, q_max, v_max: the bounds in use, shape (n,).
+        clearance: distances, when keeping clear.
         options: as given.
     """
 
@@ -63,11 +70,25 @@ class IkSolver:
         tcp_frame: Frame | str,
         options: IkOptions | None = None,
         base_frame: Frame | str | None = None,
+        diagram: Diagram | None = None,
     ) -> None:
+        """Build the solver.
+
+        Args:
+            plant: any finalized MultibodyPlant; `diagram`, with its SceneGraph, is needed to keep clear.
+            tcp_frame: the tool's frame T; base_frame: B, in which targets are given, the world when not given.
+            options: see `IkOptions`.
+            diagram: that holds the plant and its SceneGraph, for `options.keep_clear`.
+
+        Raises:
+            InputError: an option cannot be used, or the frame does not hang from the base.
+        """
         self.options = options = IkOptions() if options is None else options
         tool = plant.GetFrameByName(tcp_frame) if isinstance(tcp_frame, str) else tcp_frame
         base = plant.GetFrameByName(base_frame) if isinstance(base_frame, str) else base_frame
-        self.kinematics = ArmKinematics(plant, tool, base)
+        root_context = None if diagram is None else diagram.CreateDefaultContext()
+        context = None if root_context is None else plant.GetMyMutableContextFromRoot(root_context)
+        self.kinematics = ArmKinematics(plant, tool, base, context)
         n = self.kinematics.n
         self.q_min = self.kinematics.q_min + options.soft_limit_margin
         self.q_max = self.kinematics.q_max - options.soft_limit_margin
@@ -85,6 +106,12 @@ class IkSolver:
         self.objective = PoseObjective(self.kinematics, options.position_weight)
         self.quadratic = BoxQuadraticProgram(n, options.qp_solvers)
         self._identity = np.eye(n)
+        self.clearance: Clearance | None = None
+        if options.keep_clear is not None:
+            if diagram is None or root_context is None:
+                raise InputError("keep_clear needs the diagram of the plant and its SceneGraph; give `diagram`")
+            self.clearance = Clearance(self.kinematics, diagram, root_context, options.keep_clear)
+            self._clear_step = ClearStep(n, options.keep_clear.slack_weight)
         self._axis_weights = tuple(float(w) for w in options.axis_weights)
         if len(self._axis_weights) != 3 or not all(w >= 0.0 and math.isfinite(w) for w in self._axis_weights):
             raise InputError(f"axis_weights {options.axis_weights}: give three finite factors >= 0")
@@ -135,11 +162,26 @@ class IkSolver:
             return self._hold(q_prev, lower, upper, begin)
         self.objective.set_target(*target, weights, q_prev)
         start = q_prev if v_prev is None else q_prev + v_prev * dt
-        q, cost, iterations, active = self._minimise(np.minimum(np.maximum(start, lower), upper), lower, upper)
+        start = np.minimum(np.maximum(start, lower), upper)
+        clearance, near = math.nan, False
+        if self.clearance is None:
+            q, cost, iterations, active = self._minimise(start, lower, upper)
+        else:
+            q, cost, iterations, active, clearance = minimise_clear(
+                self.objective,
+                self.clearance,
+                self.quadratic,
+                self._clear_step,
+                start,
+                lower,
+                upper,
+                self.options.max_iterations,
+            )
+            near = clearance < self.clearance.options.margin + _AT_MARGIN
         if not math.isfinite(cost):
             return self._hold(q_prev, lower, upper, begin)
         position, orientation = self.objective.position_error, self.objective.orientation_error
-        status = IkStatus.AT_BOUND if active.any() else IkStatus.CONVERGED
+        status = IkStatus.AT_BOUND if near or active.any() else IkStatus.CONVERGED
         options = self.options
         if position > options.position_tolerance or (
             0.0 < options.orientation_tolerance < orientation and max(weights) > 0.0
@@ -148,9 +190,8 @@ class IkSolver:
             if not (active & ~at_limit).any():
                 status = IkStatus.OUT_OF_REACH
         violation = float(np.maximum(lower - q, q - upper).max())
-        return IkResult(
-            q, status, cost, position, orientation, iterations, max(violation, 0.0), time.perf_counter() - begin
-        )
+        spent = time.perf_counter() - begin
+        return IkResult(q, status, cost, position, orientation, iterations, max(violation, 0.0), spent, clearance)
 
     def _minimise(
         self, q: np.ndarray, lower: np.ndarray, upper: np.ndarray

@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 from pydrake.multibody.plant import MultibodyPlant
 from pydrake.multibody.tree import Frame
-from pydrake.systems.framework import Context, DiagramBuilder, DiscreteValues, LeafSystem, OutputPort
+from pydrake.systems.framework import Context, Diagram, DiagramBuilder, DiscreteValues, LeafSystem, OutputPort
 
 from canal.errors import InputError
 from diagrams.ik_options import IkOptions
@@ -31,6 +31,8 @@ class IkStatusField(enum.IntEnum):
     COST = 5
     """f(q), NaN when held."""
     ITERATIONS = 6
+    CLEARANCE = 7
+    """Least distance of a watched pair [m], NaN when none is watched."""
 
 
 class OrientationWeightedIk(LeafSystem):
@@ -39,7 +41,7 @@ class OrientationWeightedIk(LeafSystem):
     ```
                           ┌───────────────────────┐
     X_BT_desired (7)    → │                       │ → desired_state (2n)
-    orientation_weight  → │ OrientationWeightedIk │ → ik_status (7)
+    orientation_weight  → │ OrientationWeightedIk │ → ik_status (8)
         (1 or 3)          └───────────────────────┘
     ```
 
@@ -94,6 +96,7 @@ class OrientationWeightedIk(LeafSystem):
                     result.orientation_error,
                     result.cost,
                     result.iterations,
+                    result.clearance,
                 )
             ),
         )
@@ -110,13 +113,15 @@ class OrientationWeightedIk(LeafSystem):
         X_BT_desired: OutputPort | None = None,
         orientation_weight: OutputPort | None = None,
         period: float = CONTROL_PERIOD,
+        diagram: Diagram | None = None,
         name: str = "ik",
     ) -> "OrientationWeightedIk":
         """Add the system, connect the ports that are given, return it.
 
-        `plant` is the arm alone, finalized: the solver's own copy for kinematics, never the one that is simulated.
+        `plant` is the arm alone, finalized: the solver's own copy for kinematics, never the one that is simulated;
+        `diagram` holds it with its SceneGraph when the options ask to keep clear.
         """
-        solver = IkSolver(plant, tcp_frame, options, base_frame)
+        solver = IkSolver(plant, tcp_frame, options, base_frame, diagram)
         n_weights = 1 if orientation_weight is None else orientation_weight.size()
         system = OrientationWeightedIk(solver, q_start=q_start, period=period, n_weights=n_weights)
         builder.AddNamedSystem(name, system)
