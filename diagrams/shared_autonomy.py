@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Literal
 
 from pydrake.geometry import Meshcat, MeshcatVisualizer, MeshcatVisualizerParams
-from pydrake.systems.framework import Diagram, DiagramBuilder, OutputPort
+from pydrake.systems.framework import Context, Diagram, DiagramBuilder, OutputPort
 from pydrake.systems.primitives import ZeroOrderHold
 
 from canal.surface import CanalSurface
@@ -43,7 +43,14 @@ class SharedAutonomy:
     selector: JoystickSelector
     log: RunLog
     start: StartPosture
+    holds: tuple[ZeroOrderHold, ...]
     video: VideoRecorder | None = None
+
+    def take_first_measurements(self, root: Context) -> None:
+        """Sample all measurements before the first tick, so that none of them starts as zeros."""
+        for hold in self.holds:
+            context = hold.GetMyMutableContextFromRoot(root)
+            hold.SetVectorState(context, hold.get_input_port().Eval(context))
 
 
 def build_shared_autonomy(
@@ -95,10 +102,12 @@ def build_shared_autonomy(
 
     # Each measurement is taken once a tick, before the plant's step: whoever needs it reads the same sample.
     measured: dict[str, OutputPort] = {}
+    holds: list[ZeroOrderHold] = []
     for name, every in (dict.fromkeys(MEASURED, period) | dict.fromkeys(THINGS, PERIOD)).items():
         port = station.GetOutputPort(name)
         hold = builder.AddNamedSystem(f"measured_{name}", ZeroOrderHold(every, port.size()))
         builder.Connect(port, hold.get_input_port())
+        holds.append(hold)
         measured[name] = hold.get_output_port()
 
     person = None if meshcat is None else MeshcatJoystick.AddToBuilder(builder=builder, meshcat=meshcat)
@@ -166,7 +175,7 @@ def build_shared_autonomy(
     recorder = None if video is None else VideoRecorder.AddToBuilder(builder=builder, station=station, path=video)
     diagram = builder.Build()
     diagram.set_name("shared_autonomy")
-    return SharedAutonomy(diagram, station, navigator, ik, monitor, selector, log, start, recorder)
+    return SharedAutonomy(diagram, station, navigator, ik, monitor, selector, log, start, tuple(holds), recorder)
 
 
 def _show(builder: DiagramBuilder, station: LioStation, meshcat: Meshcat, recording: bool) -> None:

@@ -72,6 +72,7 @@ def simulate(
     reason = f"time is up after {duration:g} s"
     with _interrupts(interrupted):
         try:
+            system.take_first_measurements(simulator.get_mutable_context())
             simulator.Initialize()
             while root.get_time() < duration - 1e-9:
                 begin, simulated = time.perf_counter(), root.get_time()
