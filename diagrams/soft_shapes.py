@@ -175,7 +175,7 @@ def _tshirt(color: Rgb | None, segments: int) -> SoftShape:
     dark, light = _mix(base, (0.0, 0.0, 0.0), 0.65), _mix(base, (1.0, 1.0, 1.0), 0.75)
     body = Tube.bent(
         np.zeros(3),
-        0.25,
+        0.22,
         lambda s: 0.3 * np.sin(2.0 * np.pi * s),
         lambda s: 0.043 - 0.008 * np.sin(np.pi * s),
         lambda s: 0.033 - 0.004 * s,
@@ -222,7 +222,7 @@ def _towel(color: Rgb | None, segments: int) -> SoftShape:
     stripe, fringe = _mix(base, (0.35, 0.10, 0.05), 0.75), _mix(base, (1.0, 1.0, 1.0), 0.7)
     tube = Tube.bent(
         np.zeros(3),
-        0.28,
+        0.25,
         lambda s: 0.15 * np.sin(2.0 * np.pi * s),
         lambda s: 0.046 - 0.006 * np.sin(np.pi * s) ** 2,
         lambda s: 0.039 - 0.004 * np.sin(np.pi * s) ** 2,
