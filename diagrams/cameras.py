@@ -78,8 +78,8 @@ def add_renderer(scene_graph: SceneGraph) -> None:
         return
     lights = [
         LightParameter(type="directional", direction=(-0.5, 0.45, -1.0), frame="world", intensity=1.0),
-        LightParameter(type="directional", direction=(0.7, 0.6, -0.4), frame="world", intensity=0.45),
-        LightParameter(type="directional", direction=(-0.3, -0.9, -0.3), frame="world", intensity=0.25),
+        LightParameter(type="directional", direction=(-0.15, 0.95, -0.35), frame="world", intensity=0.65),
+        LightParameter(type="directional", direction=(-0.9, -0.5, -0.3), frame="world", intensity=0.35),
     ]
     params = RenderEngineVtkParams(default_clear_color=(0.93, 0.945, 0.96), lights=lights)
     scene_graph.AddRenderer(RENDERER, MakeRenderEngineVtk(params))

@@ -5,13 +5,13 @@ Run `python -m models.make_items`. Origin in the middle, which is the centre of 
 
 from __future__ import annotations
 
-from math import pi
+from math import cos, pi
 from pathlib import Path
 
 import numpy as np
 
 from models.mesh import Mesh, grid, lofted, merge, rounded, superellipse, turned, write_obj
-from models.sdf import Color, Link, Material, box, cylinder, ellipsoid, mesh, write_model
+from models.sdf import Color, Link, Material, box, mesh, write_model
 
 HERE = Path(__file__).parent / "items"
 MESHES = HERE / "meshes"
@@ -20,7 +20,7 @@ SCRIPT = "models/make_items.py"
 SKIN = Material(friction=0.8)
 CHINA = Material(friction=0.8)
 BEECH = Material(friction=0.8)
-COTTON = Material(friction=0.9, resolution=0.02)
+COTTON = Material(friction=0.9)
 
 RED, LEAF, STALK = (0.83, 0.14, 0.13), (0.35, 0.60, 0.20), (0.38, 0.26, 0.15)
 TEAL, AMBER = (0.05, 0.55, 0.60), (0.95, 0.68, 0.18)
@@ -46,6 +46,26 @@ def item(name: str, mass: float, inertia: tuple[float, float, float], shape: str
         write_obj(MESHES / f"{name}_{k}.obj", part)
         link.visual(mesh(f"meshes/{name}_{k}.obj"), color)
     write_model(HERE / f"{name}.sdf", name, [link], SCRIPT)
+
+
+def hull(name: str, points: np.ndarray) -> str:
+    """A coarse convex body through rings of points (rows, n, 3), as a shape to touch.
+
+    Few, flat facets: what stands on one is at rest, with few contact points, which is what a step costs.
+    """
+    write_obj(MESHES / f"{name}_hull.obj", grid(points, close_columns=True).outward())
+    return mesh(f"meshes/{name}_hull.obj", convex=True)
+
+
+def blunt(radii: tuple[float, float, float], power: float, rows: int, sides: int) -> np.ndarray:
+    """Rings of an ellipsoid along x for `hull`, grown so that its facets lie half inside and half outside of it."""
+    grow = cos(pi / sides) ** -0.5
+    t, angle = np.linspace(0, pi, rows), 2 * pi * (np.arange(sides) + 0.5) / sides
+    p, s = np.meshgrid(t, angle, indexing="ij")
+    a, b, c = radii
+    wide = grow * np.sin(p) ** (2 / power)
+    x = -a * np.sign(np.cos(p)) * np.abs(np.cos(p)) ** (2 / power)
+    return np.stack([x, b * wide * np.cos(s), c * wide * np.sin(s)], axis=-1)
 
 
 def ellipsoid_inertia(m: float, a: float, b: float, c: float) -> tuple[float, float, float]:
@@ -74,7 +94,7 @@ def apple() -> None:
     stalk = turned([[0, 0.020], [0.002, 0.020], [0.0022, 0.046], [0, 0.046]], sides=8).moved((0.001, 0, 0))
     s, w = np.meshgrid(np.linspace(0, 1, 9), np.linspace(-1, 1, 5), indexing="ij")
     leaf = np.stack([0.028 * s, 0.009 * w * np.sin(pi * s), 0.036 + 0.014 * s - 0.012 * s * s + 0.002 * w * w], -1)
-    item("apple", 0.18, ellipsoid_inertia(0.18, *APPLE), ellipsoid(APPLE), SKIN,
+    item("apple", 0.18, ellipsoid_inertia(0.18, *APPLE), hull("apple", blunt(APPLE, 2.0, 8, 10)[..., [1, 2, 0]]), SKIN,
          [(body, RED), (stalk, STALK), (grid(leaf), LEAF)])  # fmt: skip
 
 
@@ -97,7 +117,10 @@ def cup() -> None:
     reach = 0.026 + 0.004 * np.cos(s)
     loop = np.stack([r - 0.006 + 0.8 * reach * np.cos(b), 0.0055 * np.sin(s), reach * np.sin(b)], axis=-1)
     band = turned([[r + 0.0002, 0.010], [r + 0.0002, 0.022]], sides=40)
-    item("cup", 0.22, cylinder_inertia(0.22, r, 2 * h), cylinder(r, 2 * h), CHINA,
+    ring = 2 * pi * np.arange(12) / 12
+    edge = r * cos(pi / 12) ** -0.5 * np.stack([np.cos(ring), np.sin(ring)], axis=1)
+    prism = np.stack([np.column_stack([k * edge, np.full(12, z)]) for k, z in ((0, -h), (1, -h), (1, h), (0, h))])
+    item("cup", 0.22, cylinder_inertia(0.22, r, 2 * h), hull("cup", prism), CHINA,
          [(body, TEAL), (grid(loop, close_columns=True), TEAL), (band, CREAM)])  # fmt: skip
 
 
@@ -135,7 +158,7 @@ def bands(points: np.ndarray, rows: list[tuple[int, int]]) -> Mesh:
 def tshirt() -> None:
     """A T-shirt, bundled; a stripe runs around it."""
     body = bundle(SHIRT, 2.5, 0.05)
-    item("tshirt", 0.18, ellipsoid_inertia(0.18, *SHIRT), ellipsoid(SHIRT), COTTON,
+    item("tshirt", 0.18, ellipsoid_inertia(0.18, *SHIRT), hull("tshirt", blunt(SHIRT, 2.5, 8, 10)), COTTON,
          [(grid(body, close_columns=True).outward(), CORAL), (bands(body, [(9, 11), (13, 14)]), CREAM)])  # fmt: skip
 
 
@@ -143,7 +166,7 @@ def towel() -> None:
     """A towel, rolled; two borders at each end."""
     body = bundle(TOWEL, 3.0, 0.03)
     rings = [(4, 5), (6, 7), (16, 17), (18, 19)]
-    item("towel", 0.30, ellipsoid_inertia(0.30, *TOWEL), ellipsoid(TOWEL), COTTON,
+    item("towel", 0.25, ellipsoid_inertia(0.25, *TOWEL), hull("towel", blunt(TOWEL, 3.0, 8, 10)), COTTON,
          [(grid(body, close_columns=True).outward(), MINT), (bands(body, rings), CREAM)])  # fmt: skip
 
 
@@ -151,7 +174,7 @@ def sock() -> None:
     """A pair of socks, bundled: striped."""
     body = bundle(SOCK, 2.2, 0.04)
     stripes = [(k, k + 1) for k in (4, 7, 10, 13, 16, 19)]
-    item("sock", 0.06, ellipsoid_inertia(0.06, *SOCK), ellipsoid(SOCK), COTTON,
+    item("sock", 0.06, ellipsoid_inertia(0.06, *SOCK), hull("sock", blunt(SOCK, 2.2, 8, 10)), COTTON,
          [(grid(body, close_columns=True).outward(), NAVY), (bands(body, stripes), CREAM)])  # fmt: skip
 
 

@@ -57,7 +57,7 @@ def grid(points: np.ndarray, close_rows: bool = False, close_columns: bool = Fal
 
 
 def turned(profile: Sequence[Sequence[float]], axis: str = "z", sides: int = 48, close: bool = False) -> Mesh:
-    """A surface of revolution. `profile` has (radius, height along the axis); closed: a ring, else a solid with ends."""
+    """A surface of revolution. `profile` has (radius, height on the axis); closed: a ring, else a solid with ends."""
     line = np.asarray(profile, dtype=float)
     angle = 2 * np.pi * np.arange(sides) / sides
     r, h = line[:, :1], np.repeat(line[:, 1:], sides, axis=1)

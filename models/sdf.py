@@ -54,14 +54,9 @@ def cylinder(radius: float, length: float) -> str:
     return f"<cylinder><radius>{radius:g}</radius><length>{length:g}</length></cylinder>"
 
 
-def ellipsoid(radii: Vector) -> str:
-    """An ellipsoid with semi-axes [m]."""
-    return f"<ellipsoid><radii>{numbers(radii)}</radii></ellipsoid>"
-
-
-def mesh(uri: str) -> str:
-    """A mesh file beside the model."""
-    return f"<mesh><uri>{uri}</uri></mesh>"
+def mesh(uri: str, convex: bool = False) -> str:
+    """A mesh file beside the model; convex: its hull is meant."""
+    return f"<mesh>{'<drake:declare_convex/>' if convex else ''}<uri>{uri}</uri></mesh>"
 
 
 def numbers(values: Sequence[float]) -> str:
