@@ -23,6 +23,7 @@ from canal.trimming import trim
 DISK_SPACING_M = 0.005
 FEWEST_DISKS, MOST_DISKS = 200, 1000
 N_POINTS = 201  # M, points of a demonstration during alignment
+WIDE_SPREAD = 2 * math.sin(math.radians(45.0) / 4)  # σ of 45° to either side: their mean is shown by nobody
 MAX_X_TURN = math.radians(6.0)  # of x about n between neighbours: a thumb follows 6° in 5 mm
 
 
@@ -204,6 +205,12 @@ def build_surface(
         ellipses = disk_ellipses(positions - centres, x_axes, y_axes, radii)
     elif options.ellipse:
         warnings += (f"{len(positions)} demonstrations say nothing about ellipses (3 do): cross-sections are circles",)
+    if spread.max() > WIDE_SPREAD:
+        s = int(np.argmax(spread))
+        warnings += (
+            f"the demonstrations disagree in orientation by {math.degrees(4 * math.asin(spread[s] / 2)):.0f}° (root "
+            f"mean square) from their mean at disk {s} of {len(spread) - 1}",
+        )
     return CanalSurface(
         directrix=centres,
         radii=radii,

@@ -13,6 +13,7 @@ from canal.errors import InputError
 SMOOTHING_SAMPLES = 4.0  # [samples at 20 Hz] σ of the smoothing in time
 ROTATION_LENGTH_M = 0.07  # [m / rad] λ: how much motion a turn on the spot is
 SPEED_SHARE = 0.25  # v₀ = 0.25 Σv²/Σv: half of the weight is lost at a quarter of the usual speed
+LARGEST_JUMP_M, LARGEST_JUMP = 0.15, 30.0  # [m], [usual steps]; recordings have steps of up to 6 usual ones
 SMALLEST_MOTION_M = 0.005  # [m] a tremor reaches 5 mm; what moves less has no direction
 
 
@@ -46,7 +47,7 @@ def trim(demonstration: Demonstration, n_points: int) -> Motion:
         n_points: M, how many points to return.
 
     Raises:
-        InputError: it does not move.
+        InputError: it does not move, or jumps.
     """
     n = len(demonstration)
     extent = np.ptp(demonstration.position, axis=0).max()
@@ -55,6 +56,7 @@ def trim(demonstration: Demonstration, n_points: int) -> Motion:
             f"{demonstration.name}: no motion, it stays within {1e3 * extent:.1f} mm (at least "
             f"{1e3 * SMALLEST_MOTION_M:.0f} mm); record it again"
         )
+    _refuse_jumps(demonstration)
     dt = demonstration.duration / (n - 1)
     clock = np.linspace(demonstration.time[0], demonstration.time[-1], n)
     # A fast recording is smoothed as long as a slow one; a short one never over more than its own features.
@@ -79,6 +81,18 @@ def trim(demonstration: Demonstration, n_points: int) -> Motion:
         length=float(length[-1]),
         name=demonstration.name,
     )
+
+
+def _refuse_jumps(demonstration: Demonstration) -> None:
+    """A lost sensor, unlike a lost sample, moves further at once than a hand can: nothing can be learned from it."""
+    steps = np.linalg.norm(np.diff(demonstration.position, axis=0), axis=1)
+    usual = float(np.median(steps[steps > 0]))
+    worst = int(np.argmax(steps))
+    if steps[worst] > max(LARGEST_JUMP_M, LARGEST_JUMP * usual):
+        raise InputError(
+            f"{demonstration.name}: jumps by {1e3 * steps[worst]:.0f} mm at sample {worst + 1} (at most "
+            f"{1e3 * LARGEST_JUMP_M:.0f} mm, or {LARGEST_JUMP:.0f} usual steps); cut it out, or record again"
+        )
 
 
 def continuous_signs(orientation: np.ndarray) -> np.ndarray:

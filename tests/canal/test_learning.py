@@ -196,6 +196,10 @@ def test_what_is_refused():
     still = Demonstration(np.tile([0.1, 0.2, 0.3], (50, 1)), np.tile([1.0, 0, 0, 0], (50, 1)), name="still")
     with pytest.raises(InputError, match="still: no motion"):
         learn_canal([a, still])
+    lost = a.position.copy()
+    lost[len(a) // 2] += 0.5
+    with pytest.raises(InputError, match=rf"lost: jumps by 8\d\d mm at sample {len(a) // 2}"):
+        learn_canal([b, Demonstration(lost, a.orientation, name="lost")])
     backwards = Demonstration(b.position[::-1], b.orientation[::-1], name="backwards")
     with pytest.raises(InputError, match="opposite direction"):
         learn_canal([a, backwards])
@@ -219,6 +223,11 @@ def test_what_is_refused():
 def test_options_name_value_and_bound(bad):
     with pytest.raises(InputError, match=next(iter(bad))):
         LearningOptions(**bad)
+
+
+def test_wide_disagreement_in_orientation_is_warned_of_with_where():
+    wide = learn_canal(hard_demonstrations(3, 2, hardness=Hardness(disagreement=240.0)))
+    assert any("disagree in orientation" in line and "at disk" in line for line in wide.warnings)
 
 
 def test_margin_and_containing_every_raw_sample():
