@@ -80,7 +80,7 @@ def race(
     every: int,
     pace: float = 0.0,
 ) -> Samples:
-    """Time [s], gap [1], excess over the bounds [rad] and errors [m], [rad] by contender and metric."""
+    """By contender and metric: wall and processor time [s], gap [1], excess over bounds [rad], errors [m], [rad]."""
     samples = _empty()
     names = list(field)
     for case in cases:
@@ -95,11 +95,12 @@ def race(
                     name = names[index]
                     if pace:
                         time.sleep(pace)
-                    begin = time.perf_counter()
+                    begin, begin_cpu = time.perf_counter(), time.thread_time()
                     try:
                         answer = np.asarray(field[name](X, case.weight, q, v, lower, upper), dtype=float)
                     except Exception:  # mink and pink raise where their program has no solution
                         answer = np.full(solver.n, np.nan)
+                    samples[name]["cpu"].append(time.thread_time() - begin_cpu)
                     samples[name]["time"].append(time.perf_counter() - begin)
                     answers[name] = answer
                 _judge(solver, case, X, q, lower, upper, answers, samples)
@@ -183,10 +184,12 @@ def summarize(case: str, samples: Samples) -> list[Row]:
     """Medians, 99th percentiles and worst values."""
     rows = []
     for name, metrics in samples.items():
-        microseconds = 1e6 * np.array(metrics["time"])
         rows += [
-            Row(case, name, "time median", float(np.median(microseconds)), "us"),
-            Row(case, name, "time p99", float(np.percentile(microseconds, 99)), "us"),
+            Row(case, name, f"{clock} {what}", 1e6 * float(np.percentile(metrics[clock], share)), "us")
+            for clock in ("time", "cpu")
+            for what, share in (("median", 50), ("p99", 99))
+        ]
+        rows += [
             Row(case, name, "failed", 100 * float(np.mean(metrics["failed"])), "%"),
         ]
         if not metrics["gap"]:
