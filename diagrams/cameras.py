@@ -12,7 +12,6 @@ import numpy as np
 from PIL import Image
 from pydrake.common.value import Value
 from pydrake.geometry import (
-
     ClippingRange,
     ColorRenderCamera,
     DepthRange,
@@ -55,10 +54,8 @@ VIEWS = {
     "relocation": View((2.0, 0.25, 1.35), (0.12, 0.0, 0.55)),
 }
 X_GRIPPER_CAMERA = RigidTransform(
-    RotationMatrix(
-        np.column_stack([(0, -1, 0), (np.cos(0.30), 0, -np.sin(0.30)), (np.sin(0.30), 0, np.cos(0.30))])
-    ),
-    [-0.075, 0.0, 0.03],
+    RotationMatrix(np.column_stack([(0, -1, 0), (np.cos(0.30), 0, -np.sin(0.30)), (np.sin(0.30), 0, np.cos(0.30))])),
+    [-0.075, 0.0, 0.085],
 )
 """On link `lio_gripper`: above the fingers, looking down on them by 17°; z forward, y down in the picture."""
 
@@ -77,9 +74,9 @@ def add_renderer(scene_graph: SceneGraph) -> None:
     if scene_graph.HasRenderer(RENDERER):
         return
     lights = [
-        LightParameter(type="directional", direction=(-0.5, 0.45, -1.0), frame="world", intensity=1.0),
-        LightParameter(type="directional", direction=(-0.15, 0.95, -0.35), frame="world", intensity=0.65),
-        LightParameter(type="directional", direction=(-0.9, -0.5, -0.3), frame="world", intensity=0.35),
+        LightParameter(type="directional", direction=(-0.5, 0.45, -1.0), frame="world", intensity=0.85),
+        LightParameter(type="directional", direction=(-0.15, 0.95, -0.35), frame="world", intensity=0.5),
+        LightParameter(type="directional", direction=(-0.9, -0.5, -0.3), frame="world", intensity=0.25),
     ]
     params = RenderEngineVtkParams(default_clear_color=(0.93, 0.945, 0.96), lights=lights)
     scene_graph.AddRenderer(RENDERER, MakeRenderEngineVtk(params))

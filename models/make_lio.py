@@ -75,9 +75,9 @@ def finger(side: float) -> Mesh:
 def pad(side: float) -> Mesh:
     """The rubber of a finger, where the pad's contact box is."""
     outline = superellipse(0.015, 0.03, 8.0, 28)
-    low, high = (np.column_stack([outline[:, 0], np.full(28, y), outline[:, 1]]) for y in (-0.009, -0.0055))
+    low, high = (np.column_stack([outline[:, 0], np.full(28, y), outline[:, 1]]) for y in (-0.009, -0.001))
     block = grid(
-        np.stack([np.full_like(low, [0, -0.009, 0]), low, high, np.full_like(low, [0, -0.0055, 0])]), close_columns=True
+        np.stack([np.full_like(low, [0, -0.009, 0]), low, high, np.full_like(low, [0, -0.001, 0])]), close_columns=True
     )
     c, s = np.cos(0.15), np.sin(0.15)
     turn = np.array([[1, 0, 0], [0, c, -s], [0, s, c]])

@@ -1,0 +1,54 @@
+"""The shipped demonstrations have what a hand's recordings have, and are made by their script, to the bit."""
+
+import numpy as np
+import pytest
+
+from canal.demonstration import load_demonstration
+from models import MODELS
+from models.make_demonstrations import HANDS, LAUNDRY, RELOCATION, demonstrate
+
+CASES = [(task, k) for task in (LAUNDRY, RELOCATION) for k in (1, 2)]
+
+
+@pytest.fixture(params=CASES, ids=lambda case: f"{case[0].name}_{case[1]}")
+def case(request):
+    task, k = request.param
+    return task, k, load_demonstration(MODELS / "demonstrations" / f"{task.name}_{k}.npz")
+
+
+def test_made_by_the_script(case):
+    task, k, shipped = case
+    position, orientation, _ = demonstrate(task, HANDS[k - 1])
+    np.testing.assert_allclose(shipped.position, position, atol=1e-9)
+    assert np.abs(np.sum(shipped.orientation * orientation, axis=1)) == pytest.approx(1, abs=1e-9)
+
+
+def test_imperfect_as_a_hand(case):
+    position = case[2].position
+    steps = np.linalg.norm(np.diff(position, axis=0), axis=1)
+    assert 0.02 < np.mean(steps == 0.0) < 0.09  # samples that repeat the one before
+    usual = np.median(steps[steps > 1e-3])
+    assert steps.max() > 2.5 * usual  # dropped frames
+    assert np.ptp(position[:40], axis=0).max() < 3e-3  # two seconds of rest at the start
+    assert np.ptp(position[-40:], axis=0).max() < 3e-3  # and at the end
+
+
+@pytest.mark.parametrize("task", [LAUNDRY, RELOCATION], ids=lambda t: t.name)
+def test_hands_part_at_pick_and_meet_on_the_way(task):
+    one, two = (load_demonstration(MODELS / "demonstrations" / f"{task.name}_{k}.npz") for k in (1, 2))
+    assert np.linalg.norm(one.position[0] - two.position[0]) == pytest.approx(0.28, abs=0.02)
+    gaps = np.linalg.norm(one.position[:, None, :] - two.position[None, ::4, :], axis=2).min(axis=1)
+    assert gaps[len(gaps) // 4 : -len(gaps) // 4].min() < 0.03
+
+
+def test_laundry_enters_the_door_straight_and_in_its_middle():
+    door = 0.79
+    for k in (1, 2):
+        demo = load_demonstration(MODELS / "demonstrations" / f"laundry_{k}.npz")
+        inside = demo.position[:, 1] > door - 0.02
+        assert inside.any()
+        off = np.hypot(demo.position[inside, 0], demo.position[inside, 2] - 0.55)
+        assert off.max() < 0.06
+        w, x, y, z = demo.orientation[inside].T
+        forward = 2 * (x * y + w * z)  # y_B component of x_T
+        assert forward.min() > np.cos(np.deg2rad(10))
