@@ -186,11 +186,12 @@ def _tshirt(color: Rgb | None, segments: int) -> SoftShape:
     sleeves = []
     for sign, side in ((1, 0), (-1, 2)):
         root = np.arctan2(*(body.axis[-8] - body.axis[-16])[[1, 0]])
+        # Away from where the hand takes it: a sleeve that lies back along the body hooks a finger on release.
         sleeve = Tube.bent(
             body.at(np.array(1.0 - 1.5 / segments), np.array(0.0), np.array(0.0)),
-            0.1,
-            lambda s, sign=sign, root=root: root + sign * (1.8 + 0.7 * s),  # type: ignore[misc]
-            lambda s: 0.022 + 0.002 * s,
+            0.095,
+            lambda s, sign=sign, root=root: root + sign * (1.3 + 0.0 * s),  # type: ignore[misc]
+            lambda s: 0.025 + 0.002 * s,
             lambda s: 0.027 - 0.003 * s,
         )
         builder.add_branch(sections[-3], sections[-2], side, sleeve, (0.76, 1.0))
