@@ -20,7 +20,7 @@ _GROWTH = 4.0
 _CHANGES = 12
 _FEASIBLE = 1e-10  # [m], [rad]
 # Rows are formed for pairs that are within this of the margin [m]; the step is checked against all.
-_NEAR = 0.015
+_NEAR = 0.01
 _CARRIED = 3  # linearisations of earlier steps that stay: a flat pair's nearest corner jumps to and fro
 
 

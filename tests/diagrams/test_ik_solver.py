@@ -7,8 +7,6 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from ik_arm import Q_START, TCP, lio_plant, pose_of
-from pydrake.multibody.parsing import Parser
-from pydrake.multibody.plant import MultibodyPlant
 from scipy.spatial.transform import Rotation
 
 from canal.errors import InputError
@@ -268,37 +266,3 @@ def test_soft_limits_lie_inside_the_models() -> None:
 def test_options_that_cannot_be_used_are_refused(options: IkOptions, message: str) -> None:
     with pytest.raises(InputError, match=message):
         IkSolver(lio_plant(), TCP, options)
-
-
-def test_a_frame_that_no_joint_moves_is_refused() -> None:
-    plant = lio_plant()
-    with pytest.raises(InputError, match="no joint moves"):
-        IkSolver(plant, "lio_base")
-
-
-SEVEN_JOINTS = "".join(
-    f'<link name="l{i + 1}"><inertial><mass value="1"/>'
-    '<inertia ixx="0.01" iyy="0.01" izz="0.01" ixy="0" ixz="0" iyz="0"/></inertial></link>'
-    f'<joint name="j{i + 1}" type="{"prismatic" if i == 0 else "revolute"}"><parent link="l{i}"/>'
-    f'<child link="l{i + 1}"/><origin xyz="0 0 0.15"/><axis xyz="{"1 0 0" if i == 0 else ("0 0 1", "0 1 0")[i % 2]}"/>'
-    '<limit lower="-1.5" upper="1.5" velocity="2" effort="10"/></joint>'
-    for i in range(7)
-)
-
-
-def test_another_robot_with_seven_joints_one_of_them_sliding_is_welcome() -> None:
-    plant = MultibodyPlant(0.0)
-    urdf = f'<robot name="other"><link name="l0"/>{SEVEN_JOINTS}</robot>'
-    Parser(plant).AddModelsFromString(urdf, "urdf")
-    plant.WeldFrames(plant.world_frame(), plant.GetFrameByName("l0"))
-    plant.Finalize()
-    solver = IkSolver(plant, "l7", base_frame="l0")
-    assert solver.n == 7
-    q = np.array([0.1, 0.2, -0.5, 0.3, 0.8, -0.2, 0.4])
-    target = pose_of(solver, q + 0.3)
-    for _ in range(60):
-        result = solver.solve(target, 15.0, q, DT)
-        assert_safe(solver, result, q, DT)
-        q = result.q
-    assert result.position_error < 1e-6
-    assert result.orientation_error < 1e-6
