@@ -23,8 +23,8 @@ def housing(radius: float, width: float) -> Mesh:
 
 def cap(radius: float, width: float) -> Mesh:
     """The thin discs on both sides of a housing."""
-    disks = [[[0, s * width / 2], [radius, s * width / 2], [radius, s * (width / 2 + 0.004)], [0, s * (width / 2 + 0.004)]]
-             for s in (-1, 1)]  # fmt: skip
+    low, high = width / 2, width / 2 + 0.004
+    disks = [[[0, s * low], [radius, s * low], [radius, s * high], [0, s * high]] for s in (-1, 1)]
     return merge(*(turned(rounded(d, 0.003), "y", 36) for d in disks))
 
 
@@ -97,7 +97,9 @@ def main() -> None:
         "link1_shell": limb([(0.004, 0.080, 0.080), (0.03, 0.078, 0.078), (0.08, 0.072, 0.070), (0.15, 0.060, 0.056)]),
         "link1_joint": housing(0.068, 0.126),
         "link1_cap": cap(0.050, 0.126),
-        "link2_shell": limb([(0.02, 0.054, 0.050), (0.07, 0.060, 0.056), (0.15, 0.057, 0.053), (0.23, 0.050, 0.048), (0.28, 0.046, 0.044)]),
+        "link2_shell": limb(
+            [(0.02, 0.054, 0.05), (0.07, 0.06, 0.056), (0.15, 0.057, 0.053), (0.23, 0.05, 0.048), (0.28, 0.046, 0.044)]
+        ),
         "link2_joint": housing(0.060, 0.112),
         "link2_cap": cap(0.044, 0.112),
         "link3_shell": limb([(0.02, 0.046, 0.044), (0.06, 0.051, 0.049), (0.12, 0.049, 0.049), (0.152, 0.047, 0.047)]),
@@ -108,7 +110,10 @@ def main() -> None:
         "link5_shell": limb([(0.02, 0.038, 0.036), (0.05, 0.042, 0.041), (0.09, 0.042, 0.042), (0.118, 0.041, 0.041)]),
         "link5_ring": collar(0.0425, 0.117, 0.129),
         "link6_flange": collar(0.040, 0.002, 0.042),
-        "gripper_body": limb([(0.0, 0.036, 0.040), (0.02, 0.039, 0.050), (0.07, 0.038, 0.054), (0.105, 0.030, 0.052), (0.118, 0.022, 0.046)], 3.6),
+        "gripper_body": limb(
+            [(0, 0.036, 0.04), (0.02, 0.039, 0.05), (0.07, 0.038, 0.054), (0.105, 0.03, 0.052), (0.118, 0.022, 0.046)],
+            3.6,
+        ),
         "gripper_band": limb([(0.030, 0.0400, 0.0522), (0.040, 0.0404, 0.0536)], 3.6),
         "finger_left": finger(1.0),
         "finger_right": finger(-1.0),

@@ -18,8 +18,8 @@ STEEL = Material(friction=0.4, modulus=1e7, margin=0.004)
 """Sheet metal and drum. With this stiffness and margin a bundle that falls into the drum at 2 m/s sinks in by 3-5 mm at
 a time step of 5 ms; without the margin by 7 mm, since it is 10 mm further a step later."""
 WOOD = Material(friction=0.6, modulus=3e6, margin=0.001)
-WICKER = Material(friction=0.6, modulus=3e5)
-"""Soft enough that what lies in the basket comes to rest with few contact points, which is what a step costs."""
+WICKER = Material(friction=0.6, modulus=1e6, margin=0.001)
+"""Softer, so that what lies in the basket comes to rest with few contact points, which is what a step costs."""
 
 WHITE = (0.94, 0.95, 0.96)
 GREY = (0.72, 0.75, 0.78)

@@ -1,0 +1,101 @@
+"""Scenarios: those that ship are sound; what cannot be used is refused in one clear line."""
+
+import re
+
+import numpy as np
+import pytest
+import yaml
+
+from canal.errors import InputError
+from diagrams.layout import draw_layout
+from diagrams.scenario import load_scenario, shipped_scenarios, with_items
+from models import SCENARIOS
+
+NAMED = ["laundry", "laundry-crowded", "laundry-hanging", "laundry-narrow", "relocation", "relocation-far"]
+
+
+def test_those_named_ship():
+    assert set(NAMED) <= set(shipped_scenarios())
+
+
+@pytest.mark.parametrize("name", NAMED)
+def test_shipped_ones_load_and_leave_room(name):
+    scenario = load_scenario(name)
+    for seed in range(20):
+        starts, marks = draw_layout(scenario, seed)
+        for spots in (starts, [m for m in marks if m is not None]):
+            at = np.array([s.position for s in spots])
+            gaps = [np.linalg.norm(a - b) for i, a in enumerate(at) for b in at[i + 1 :]]
+            assert min(gaps, default=1.0) >= scenario.item_spacing
+
+
+def test_layout_is_the_seeds():
+    scenario = load_scenario("laundry")
+    same = [draw_layout(scenario, 3)[0][0].position for _ in range(2)]
+    other = draw_layout(scenario, 4)[0][0].position
+    assert np.array_equal(*same)
+    assert not np.array_equal(same[0], other)
+
+
+def test_a_region_too_small_is_refused():
+    scenario = load_scenario("laundry")
+    scenario.item_spacing = 0.5
+    with pytest.raises(InputError, match=r"items\.tshirt\.start leaves no place that is 0\.5 m"):
+        draw_layout(scenario, 0)
+
+
+def test_items_kind_of_laundry_only():
+    assert {i.kind for i in with_items(load_scenario("laundry"), "soft").items} == {"soft"}
+    assert {i.kind for i in with_items(load_scenario("relocation"), "soft").items} == {"rigid"}
+    with pytest.raises(InputError, match="'firm'"):
+        with_items(load_scenario("laundry"), "firm")
+
+
+def test_unknown_name_lists_those_that_ship():
+    with pytest.raises(InputError, match=r"'landry' does not exist; .*laundry, laundry-crowded"):
+        load_scenario("landry")
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        ({"foo": 3}, "foo is not known; use task, "),
+        ({"task": "cook"}, "task is 'cook'; use one of laundry, relocation"),
+        ({"item_spacing": "abc"}, "item_spacing is 'abc'; give a number"),
+        ({"drum": 7}, "drum is 7; give keys among center"),
+        ({"drum": {"depth": "deep"}}, "drum.depth is 'deep'; give a number"),
+        ({"things": 5}, "things is 5; give a list"),
+        ({"things": [{"name": "a", "model": "nothing"}]}, "'nothing' does not exist; give a file or one of basket"),
+        ({"items": []}, "items is empty"),
+        ({"items": [{"nam": "x"}]}, "items[0].nam is not known"),
+        ({"items": [{"name": "a", "model": "towel", "kind": "firm"}]}, "items.a.kind is 'firm'"),
+        ({"items": [{"name": "a", "model": "anvil"}]}, "'anvil' does not exist"),
+        ({"robot": {"position": [0, 0]}}, "robot.position is [0.0, 0.0]; give 3 finite numbers"),
+        ({"robot": {"position": [0, 0, float("nan")]}}, "give 3 finite numbers"),
+        ({"contact": {"time_step": 0.02}}, "contact.time_step is 0.02"),
+        ({"contact": {"approximation": "magic"}}, "contact.approximation is 'magic'"),
+        ({"control_rate_hz": [1]}, "control_rate_hz is [1]; give a number"),
+        ({"learning": {"stepp": 0.1}}, "learning is 'stepp'; use one of step"),
+        ({"navigation": {"speed_scale": -2}}, "navigation.speed_scale is -2.0"),
+        ({"monitor": {"force_limit_n": 0}}, "monitor.force_limit_n is 0"),
+        ({"demonstrations": ["no.npz"]}, "'no.npz' does not exist; give a file or one of laundry_1.npz"),
+        ({"demonstrations": []}, "neither canal nor demonstrations"),
+    ],
+)
+def test_what_cannot_be_used(tmp_path, change, message):
+    document = yaml.safe_load((SCENARIOS / "laundry.yaml").read_text()) | change
+    path = tmp_path / "mine.yaml"
+    path.write_text(yaml.safe_dump(document))
+    with pytest.raises(InputError, match=re.escape(message)) as caught:
+        load_scenario(path)
+    assert str(caught.value).startswith("scenario mine.yaml: ")
+    assert "\n" not in str(caught.value)
+
+
+@pytest.mark.parametrize("text", ["task: [", "- 1", "", "\x00"])
+def test_what_is_no_scenario_at_all(tmp_path, text):
+    path = tmp_path / "mine.yaml"
+    path.write_text(text)
+    with pytest.raises(InputError) as caught:
+        load_scenario(path)
+    assert "\n" not in str(caught.value)

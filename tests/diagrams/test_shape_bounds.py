@@ -1,0 +1,57 @@
+"""Bounds of shapes against points of their surfaces."""
+
+import numpy as np
+import pytest
+from pydrake.geometry import (
+    Box,
+    Capsule,
+    Cylinder,
+    Ellipsoid,
+    GeometryInstance,
+    ProximityProperties,
+    SceneGraph,
+    Sphere,
+)
+from pydrake.math import RigidTransform, RotationMatrix
+from scipy.spatial.transform import Rotation
+
+from diagrams.shape_bounds import extent, union_bounds
+
+
+def pose(seed):
+    rng = np.random.default_rng(seed)
+    return RigidTransform(RotationMatrix(Rotation.random(rng=rng).as_matrix()), rng.uniform(-1, 1, 3))
+
+
+def surface(shape):
+    """Points on a shape, dense enough for 2 mm."""
+    t, p = (a.ravel() for a in np.meshgrid(np.linspace(0, 2 * np.pi, 181), np.linspace(0, np.pi, 91)))
+    ball = np.stack([np.sin(p) * np.cos(t), np.sin(p) * np.sin(t), np.cos(p)], axis=1)
+    if isinstance(shape, Box):
+        return np.array([[x, y, z] for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)]) * shape.size() / 2
+    if isinstance(shape, Ellipsoid):
+        return ball * [shape.a(), shape.b(), shape.c()]
+    if isinstance(shape, Sphere):
+        return ball * shape.radius()
+    ring = np.stack([np.cos(t), np.sin(t), 0 * t], axis=1) if isinstance(shape, Cylinder) else ball
+    return np.vstack([ring * shape.radius() + [0, 0, s * shape.length() / 2] for s in (-1, 1)])
+
+
+@pytest.mark.parametrize(
+    "shape", [Box(0.1, 0.2, 0.3), Ellipsoid(0.1, 0.2, 0.05), Sphere(0.1), Cylinder(0.05, 0.3), Capsule(0.05, 0.3)],
+    ids=lambda s: type(s).__name__,
+)  # fmt: skip
+@pytest.mark.parametrize("seed", range(3))
+def test_bounds_are_tight(shape, seed):
+    scene_graph = SceneGraph()
+    source = scene_graph.RegisterSource("test")
+    X_PG, X_WP = pose(seed), pose(seed + 100)
+    instance = GeometryInstance(X_PG, shape, "shape")
+    instance.set_proximity_properties(ProximityProperties())
+    geometry = scene_graph.RegisterAnchoredGeometry(source, instance)
+    bounds = union_bounds([extent(scene_graph.model_inspector(), geometry)], X_WP)
+    points = X_WP.multiply(X_PG).multiply(surface(shape).T).T
+    assert np.all(points >= bounds[:3] - 1e-9)
+    assert np.all(points <= bounds[3:] + 1e-9)
+    assert bounds[:3] == pytest.approx(points.min(axis=0), abs=2e-3)
+    assert bounds[3:] == pytest.approx(points.max(axis=0), abs=2e-3)
