@@ -62,13 +62,16 @@ class ClearStep:
         C = np.vstack((A, self._identity, -self._identity))
         least = np.concatenate((missing, lower, -upper))
         active: list[int] = []
-        step = free
+        k, step = len(A), free
         for _ in range(_CHANGES):
             room = C.dot(step) - least
             room[active] = 0.0
-            worst = int(np.argmin(room))
+            # Rows before bounds: bent onto the rows, the step is mostly short enough for the bounds.
+            worst = int(np.argmin(room[:k]))
             if room[worst] >= -_FEASIBLE:
-                return step
+                worst = k + int(np.argmin(room[k:]))
+                if room[worst] >= -_FEASIBLE:
+                    return step
             active.append(worst)
             while active:
                 rows = C[active]
@@ -79,7 +82,7 @@ class ClearStep:
                 if multipliers.min() >= 0.0:
                     break
                 active.pop(int(np.argmin(multipliers)))
-            if sum(m for m, row in zip(multipliers, active, strict=True) if row < len(A)) > self.slack_weight:
+            if sum(m for m, row in zip(multipliers, active, strict=True) if row < k) > self.slack_weight:
                 return None
             step = free + spread.dot(multipliers)
         return None
