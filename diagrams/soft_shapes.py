@@ -176,7 +176,8 @@ def _tshirt(color: Rgb | None, segments: int) -> SoftShape:
     body = Tube.bent(
         np.zeros(3),
         0.22,
-        lambda s: 0.3 * np.sin(2.0 * np.pi * s),
+        # Collar towards the robot: it enters the door collar down, and its sleeves do not rest on the fingers.
+        lambda s: np.pi + 0.3 * np.sin(2.0 * np.pi * s),
         lambda s: 0.043 - 0.008 * np.sin(np.pi * s),
         lambda s: 0.033 - 0.004 * s,
     )
