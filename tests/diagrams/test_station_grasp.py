@@ -1,0 +1,67 @@
+"""Grasps are friction: closed around a thing, the pads carry it, and it slips less than 3 mm (DRAKE_NOTES, 5 ms)."""
+
+import numpy as np
+import pytest
+from pydrake.systems.analysis import Simulator
+
+from diagrams.ik_solver import IkSolver
+from diagrams.lio_arm import TCP_FRAME, make_arm_plant
+from diagrams.lio_station import LioStation
+from diagrams.pose_vector import vector_to_pose
+from diagrams.scenario import load_scenario
+
+# R_BT with x_T straight down; at azimuth 0 the fingers open along y_B.
+DOWN = np.array([0.0, 0.7071067811865476, 0.0, -0.7071067811865476])
+NEAR = np.array([-1.5, 0.3, 1.2, 0.0, 1.4, 0.0])
+STEP = 0.01
+SLIP = 3e-3
+
+
+def reach(solver, position, q):
+    """Posture for the gripper to point down at a place in B, from a posture near by."""
+    for _ in range(20):
+        q = solver.solve(np.concatenate([position, DOWN]), 15.0, q, 1.0).q
+    return q
+
+
+@pytest.mark.parametrize("name", ["towel", "tshirt", "sock", "apple", "cup", "cube"])
+def test_carried_without_slip(name):
+    scenario = load_scenario("relocation" if name in ("apple", "cup", "cube") else "laundry")
+    (item,) = (i for i in scenario.items if i.name == name)
+    # One thing on a bare table before the robot, its long side across the fingers.
+    table = next(t for t in scenario.things if t.name == "table")
+    table.model, table.position = "laundry_table", [0.46, 0.0, 0.0]
+    scenario.things, scenario.items = [table], [item]
+    item.kind = "rigid"
+    item.start.center, item.start.half_widths, item.start.yaw_deg = [0.45, 0.0, 0.30], [0.0, 0.0], [0.0, 0.0]
+
+    solver = IkSolver(make_arm_plant(), TCP_FRAME, scenario.ik)
+    low = reach(solver, np.array([0.45, 0.0, 0.335]), NEAR)
+    high = reach(solver, np.array([0.42, 0.12, 0.50]), low)
+    station = LioStation(scenario, q0=low)
+    simulator = Simulator(station)
+    context = simulator.get_mutable_context()
+    wanted = station.GetInputPort("desired_state").FixValue(context, np.concatenate([low, np.zeros(6)]))
+    station.GetInputPort("gripper_command").FixValue(context, [1.0])
+    simulator.AdvanceTo(1.2)
+
+    def seen_from_the_hand():
+        X_BT = vector_to_pose(station.GetOutputPort("X_BT").Eval(context))
+        return X_BT.inverse().multiply(vector_to_pose(station.GetOutputPort("item_poses").Eval(context)))
+
+    held = seen_from_the_hand()
+    turn = np.array([0.0, 0.0, 0.0, 0.0, -0.6, 0.5])  # the gripper tilts, as towards the door
+    last = low
+    slip = depth = 0.0
+    for k in range(1, 151):
+        share = 0.5 - 0.5 * np.cos(np.pi * k / 150)
+        q = low + share * (high + turn - low)
+        wanted.GetMutableData().set_value(np.concatenate([q, (q - last) / STEP]))
+        last = q
+        simulator.AdvanceTo(1.2 + k * STEP)
+        slip = max(slip, np.linalg.norm(seen_from_the_hand().translation() - held.translation()))
+        depth = max(depth, station.GetOutputPort("penetration").Eval(context)[0])
+    bounds = station.GetOutputPort("item_bounds").Eval(context)
+    assert bounds[2] > 0.34  # it came along
+    assert slip < SLIP
+    assert depth < 5e-3
