@@ -13,11 +13,10 @@ from pydrake.systems.primitives import ZeroOrderHold
 from canal.surface import CanalSurface
 from diagrams.cameras import VideoRecorder
 from diagrams.canal_view import CanalView
-from diagrams.ik_solver import IkSolver
+from diagrams.clear_arm import make_lio_solver
 from diagrams.ik_system import OrientationWeightedIk
 from diagrams.joystick import JoystickSelector, RecordedJoystick
 from diagrams.joystick_recording import JoystickRecording
-from diagrams.lio_arm import TCP_FRAME, make_arm_plant
 from diagrams.lio_station import START_POSTURE, LioStation
 from diagrams.meshcat_joystick import MeshcatJoystick
 from diagrams.monitor import Monitor
@@ -85,7 +84,7 @@ def build_shared_autonomy(
     period = 1.0 / scenario.control_rate_hz
     builder = DiagramBuilder()
 
-    solver = IkSolver(make_arm_plant(), TCP_FRAME, scenario.ik)
+    solver = make_lio_solver(scenario)
     start = find_start_posture(solver, canal, preferred=START_POSTURE)
     station = LioStation.AddToBuilder(builder=builder, scenario=scenario, seed=seed, q0=start.q)
     navigator = CanalNavigator.AddToBuilder(builder=builder, canal=canal, options=scenario.navigation, period=period)

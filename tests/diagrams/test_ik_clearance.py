@@ -11,8 +11,11 @@ from pydrake.multibody.tree import SpatialInertia
 from pydrake.systems.framework import Diagram, DiagramBuilder
 
 from canal.errors import InputError
+from diagrams.clear_arm import make_lio_solver
 from diagrams.ik_options import IkOptions, IkStatus, KeepClearOptions
 from diagrams.ik_solver import IkSolver
+from diagrams.lio_station import START_POSTURE
+from diagrams.scenario import load_scenario
 from models import LIO_URDF
 
 DT = 0.01
@@ -161,3 +164,21 @@ def test_bad_options_are_refused() -> None:
             IkSolver(plant, TCP, IkOptions(keep_clear=options), diagram=diagram)
     with pytest.raises(InputError, match="give `diagram`"):
         IkSolver(lio_plant(), TCP, IkOptions(keep_clear=KeepClearOptions()))
+
+
+def test_a_scenario_can_ask_the_arm_to_keep_clear_of_its_things() -> None:
+    scenario = load_scenario("laundry")
+    assert make_lio_solver(scenario).clearance is None
+    scenario.ik.keep_clear = KeepClearOptions(margin=0.01, solid_bodies=["machine"])
+    solver = make_lio_solver(scenario)
+    assert solver.clearance is not None
+    front = pose_of(solver, START_POSTURE)
+    q, v = START_POSTURE, np.zeros(6)
+    # Straight at the machine's front, beside the door.
+    for k in range(300):
+        X = front.copy()
+        X[1] += 0.9 * k / 300
+        result = solver.solve(X, 1.0, q, DT, v)
+        q, v = result.q, (result.q - q) / DT
+        assert result.status != IkStatus.HELD
+        assert result.clearance >= 0.01
