@@ -34,6 +34,7 @@ class ItemSensor(LeafSystem):
         super().__init__()
         self._items = scene.items
         self._soft = [k for k, item in enumerate(scene.items) if isinstance(item, SoftItem)]
+        self._soft_items = scene.soft_items
         n = len(scene.items)
         self._poses = self.DeclareAbstractInputPort("body_poses", AbstractValue.Make([RigidTransform()]))
         self._velocities = self.DeclareAbstractInputPort("body_velocities", AbstractValue.Make([SpatialVelocity()]))
@@ -85,5 +86,5 @@ class ItemSensor(LeafSystem):
 
     def _update(self, context: Context, discrete: DiscreteValues) -> None:
         now = context.get_discrete_state(self._middles).value().reshape(2, -1)[1]
-        nodes = [self._nodes(context, self._items[k]) for k in self._soft]
+        nodes = [self._nodes(context, item) for item in self._soft_items]
         discrete.set_value(self._middles, np.concatenate([now, *(p.mean(axis=0) for p in nodes)]))

@@ -34,8 +34,9 @@ def draw_layout(scenario: Scenario, seed: int) -> tuple[list[Spot], list[Spot | 
     marks: list[Spot] = []
     goals: list[Spot | None] = []
     for item in scenario.items:
-        soft = item.kind == "soft" and item.soft_start is not None
-        region, key = (item.soft_start, "soft_start") if soft else (item.start, "start")
+        region, key = item.start, "start"
+        if item.kind == "soft" and item.soft_start is not None:
+            region, key = item.soft_start, "soft_start"
         starts.append(_draw(rng, item, region, starts, scenario.item_spacing, key))
     for item in scenario.items:
         if item.goal is None:
@@ -49,7 +50,7 @@ def draw_layout(scenario: Scenario, seed: int) -> tuple[list[Spot], list[Spot | 
 def _draw(rng: np.random.Generator, item: Item, region: Region, others: list[Spot], spacing: float, what: str) -> Spot:
     for _ in range(TRIES):
         shift = rng.uniform(-1, 1, 2) * region.half_widths
-        yaw = np.deg2rad(rng.uniform(*region.yaw_deg))
+        yaw = np.deg2rad(rng.uniform(region.yaw_deg[0], region.yaw_deg[1]))
         position = np.asarray(region.center, dtype=float) + [*shift, 0.0]
         if all(np.linalg.norm(position - other.position) >= spacing for other in others):
             return Spot(position, float(yaw))

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 
 import numpy as np
-from pydrake.geometry import Cylinder, GeometryId, Role, SceneGraph
+from pydrake.geometry import Cylinder, GeometryId, SceneGraph
 from pydrake.math import RigidTransform, RollPitchYaw, RotationMatrix
 from pydrake.multibody.parsing import Parser
 from pydrake.multibody.plant import MultibodyPlant
@@ -182,8 +182,3 @@ def _depth(query: object, boxes: dict, a: GeometryId, b: GeometryId) -> float:
     if np.any(low_a > high_b - OVERLAP) or np.any(low_b > high_a - OVERLAP):
         return 0.0
     return -query.ComputeSignedDistancePairClosestPoints(a, b).distance  # type: ignore[attr-defined]
-
-
-def role_count(scene_graph: SceneGraph) -> int:
-    """How many shapes take part in contact."""
-    return scene_graph.model_inspector().NumGeometriesWithRole(Role.kProximity)

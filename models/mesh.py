@@ -8,6 +8,9 @@ from pathlib import Path
 
 import numpy as np
 
+Profile = Sequence[Sequence[float]] | np.ndarray
+"""Points (n, 2)."""
+
 CREASE = np.cos(np.deg2rad(38.0))
 """Faces that meet at more than 38° keep their edge; others shade smoothly."""
 
@@ -56,7 +59,7 @@ def grid(points: np.ndarray, close_rows: bool = False, close_columns: bool = Fal
     return Mesh(points.reshape(-1, 3), triangles)
 
 
-def turned(profile: Sequence[Sequence[float]], axis: str = "z", sides: int = 48, close: bool = False) -> Mesh:
+def turned(profile: Profile, axis: str = "z", sides: int = 48, close: bool = False) -> Mesh:
     """A surface of revolution. `profile` has (radius, height on the axis); closed: a ring, else a solid with ends."""
     line = np.asarray(profile, dtype=float)
     angle = 2 * np.pi * np.arange(sides) / sides
@@ -66,7 +69,7 @@ def turned(profile: Sequence[Sequence[float]], axis: str = "z", sides: int = 48,
     return grid(np.stack(order, axis=-1), close_rows=close, close_columns=True).outward()
 
 
-def rounded(profile: Sequence[Sequence[float]], fillet: float, steps: int = 4) -> np.ndarray:
+def rounded(profile: Profile, fillet: float, steps: int = 4) -> np.ndarray:
     """A profile (n, 2), its inner corners rounded with at most the given radius [m]."""
     p = np.asarray(profile, dtype=float)
     out = [p[0]]
