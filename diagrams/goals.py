@@ -26,6 +26,10 @@ class Goal(Protocol):
         ...
 
 
+BACK_WALL = 0.03
+"""Thickness of the drum's back [m]: nothing gets past it, so that what leans on it, seen a little wrong, is inside."""
+
+
 @dataclass(frozen=True)
 class DrumGoal:
     """Inside a front-loading drum: the whole shape behind the door's plane and within the drum."""
@@ -60,7 +64,7 @@ class DrumGoal:
         across = middle - (middle @ self.inward) * self.inward
         return bool(
             depths.min() >= -self.clearance
-            and depths.max() <= self.depth + self.clearance
+            and depths.max() <= self.depth + self.clearance + BACK_WALL
             and np.linalg.norm(across) <= self.radius
         )
 
