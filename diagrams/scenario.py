@@ -107,6 +107,17 @@ class Plane:
 
 
 @dataclass
+class Retarget:
+    """Where pick and place are now, if the task has moved since it was shown: poses of the TCP in B.
+
+    Each a position [m], or a position and a quaternion (w, x, y, z); empty keeps the canal's own.
+    """
+
+    pick: list[float] = field(default_factory=list)
+    place: list[float] = field(default_factory=list)
+
+
+@dataclass
 class Scenario:
     """A task, and all that it needs."""
 
@@ -124,6 +135,7 @@ class Scenario:
     """Files of models/demonstrations, or paths beside the scenario."""
     canal: str | None = None
     """A learned canal instead of demonstrations."""
+    retarget: Retarget = field(default_factory=Retarget)
     support_planes: list[Plane] = field(default_factory=list)
     learning: dict[str, float] = field(default_factory=dict)
     """Fields of canal.learning.LearningOptions that differ from their defaults."""
@@ -251,6 +263,10 @@ def validate(scenario: Scenario) -> None:
     if scenario.drum is not None:
         _numbers("drum.center", scenario.drum.center, 3)
         _numbers("drum.inward", scenario.drum.inward, 3)
+    for end in ("pick", "place"):
+        pose = getattr(scenario.retarget, end)
+        if pose:
+            _numbers(f"retarget.{end}", pose, 7 if len(pose) > 3 else 3)
     for plane in scenario.support_planes:
         _numbers("support_planes.normal", plane.normal, 3)
     if scenario.canal is None and not scenario.demonstrations:

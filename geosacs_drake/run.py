@@ -12,6 +12,7 @@ from tqdm import tqdm
 from canal.demonstration import load_demonstration, write_npz
 from canal.learning import LearningOptions, learn_canal
 from canal.refinement import SupportPlane
+from canal.retargeting import retarget
 from canal.surface import CanalSurface
 from diagrams.joystick_recording import load_recording
 from diagrams.meshcat_joystick import CONTROLS
@@ -83,7 +84,18 @@ def run(options: RunOptions, task: str) -> ExitStatus:
 
 
 def prepare_canal(scenario: Scenario, options: RunOptions) -> CanalSurface:
-    """The canal that the options or the scenario name: loaded, or learned."""
+    """The canal that the options or the scenario name: loaded, or learned; moved to where the task is now."""
+    planes = tuple(SupportPlane(tuple(p.normal), p.offset) for p in scenario.support_planes)  # type: ignore[arg-type]
+    canal = _load_or_learn(scenario, options, planes)
+    ends = {end: getattr(scenario.retarget, end) or None for end in ("pick", "place")}
+    if any(ends.values()):
+        canal = retarget(canal, **ends, support_planes=planes or None)
+    for warning in canal.warnings:
+        print(f"canal: {warning}", file=sys.stderr)
+    return canal
+
+
+def _load_or_learn(scenario: Scenario, options: RunOptions, planes: tuple[SupportPlane, ...]) -> CanalSurface:
     if options.canal is not None:
         return CanalSurface.load(options.canal)
     if not options.demos and scenario.canal is not None:
@@ -91,12 +103,8 @@ def prepare_canal(scenario: Scenario, options: RunOptions) -> CanalSurface:
     paths: list[Path] = list(options.demos) or [
         scenario.resolve(name, MODELS / "demonstrations") for name in scenario.demonstrations
     ]
-    planes = tuple(SupportPlane(tuple(p.normal), p.offset) for p in scenario.support_planes)  # type: ignore[arg-type]
     learning = LearningOptions(support_planes=planes, **scenario.learning)  # type: ignore[arg-type]
-    canal = learn_canal([load_demonstration(path) for path in paths], learning)
-    for warning in canal.warnings:
-        print(f"canal: {warning}", file=sys.stderr)
-    return canal
+    return learn_canal([load_demonstration(path) for path in paths], learning)
 
 
 def operator_of(options: RunOptions):
