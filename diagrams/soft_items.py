@@ -1,8 +1,8 @@
 """Soft pieces in a MultibodyPlant: register them before Finalize, read them from a Context after.
 
 The material is a linear corotated solid with stiffness-proportional damping. Its numbers come from
-`benchmarks/bench_soft.py` (table in build/bench-soft.csv): softer and the fingers squeeze through, stiffer and nothing
-hangs, less damping and a pile keeps trembling.
+`benchmarks/bench_soft.py` (table in build/bench-soft.csv): at 3 kPa the fingers squeeze through and drop it, at 20 kPa
+nothing sags; less damping makes a step dearer, more changes little.
 """
 
 from __future__ import annotations
