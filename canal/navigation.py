@@ -7,6 +7,7 @@ along the canal, or, while the stick is off centre, on the disk alone. No clock 
 import math
 from dataclasses import dataclass, fields, replace
 from enum import IntEnum
+from operator import attrgetter
 
 import numpy as np
 
@@ -141,7 +142,7 @@ class NavigationState:
 
     def to_vector(self) -> np.ndarray:
         """All fields in order. Shape (len(fields),)."""
-        return np.array([getattr(self, name) for name in FIELD_NAMES])
+        return np.array(_ALL_FIELDS(self))
 
     @staticmethod
     def from_vector(vector: np.ndarray) -> "NavigationState":
@@ -151,6 +152,8 @@ class NavigationState:
 
 FIELD_NAMES: tuple[str, ...] = tuple(f.name for f in fields(NavigationState))
 """Names of the components of the state vector, in order."""
+_ALL_FIELDS = attrgetter(*FIELD_NAMES)
+_HELD = ("held_gripper", "held_reverse", "held_start", "held_stop", "held_alarm")
 
 
 def initial_state(canal: CanalSurface) -> NavigationState:
@@ -216,14 +219,9 @@ def step(
             state = _reverse(state)
         if gripper and not state.held_gripper:
             state = _toggle_gripper(canal, state, options)
-    state = replace(
-        state,
-        held_gripper=float(gripper),
-        held_reverse=float(reverse),
-        held_start=float(start),
-        held_stop=float(stop),
-        held_alarm=float(alarm),
-    )
+    held = (gripper, reverse, start, stop, alarm)
+    if held != (state.held_gripper, state.held_reverse, state.held_start, state.held_stop, state.held_alarm):
+        state = replace(state, **dict(zip(_HELD, map(float, held), strict=True)))
     if not state.running or state.blocked:
         return _end_correction(state)
     if state.pause_s >= 0:

@@ -32,7 +32,7 @@ GRIP_STIFFNESS, GRIP_DAMPING = 200.0, 4.0
 GRIP_EFFORT = 4.0
 """[N m] of the 50 that the drive has: 32 N at the fingertips hold all that is here, and hurt nobody."""
 ROTOR_INERTIA = 0.02
-"""Of arm drives, reflected to the joint [kg m²]: a stand-in for gears that are not published, small beside the links."""
+"""Of arm drives, at the joint [kg m²]: a stand-in for gears that are not published, small beside the links."""
 
 
 class LioStation(Diagram):
@@ -44,7 +44,7 @@ class LioStation(Diagram):
        gripper_command (1)    → └────────────┘ → contact_forces (pairs) [N], penetration (1) [m]
     ```
 
-    The gripper closes at a command of 1, opens at 0. Items are in the order of the scenario, in W; `contact_pairs` names
+    The gripper closes at a command of 1, opens at 0. Items are in the scenario's order, in W; `contact_pairs` names
     the pairs. Gravity does not act on the arm's model: ideal compensation, as the real drives have it.
     """
 

@@ -88,10 +88,10 @@ class CanalNavigator(LeafSystem):
         discrete.set_value(0, state.to_vector())
 
     def _calc_pose(self, context: Context, output: BasicVector) -> None:
-        state = self.state(context)
+        disk, eta, phi = context.get_discrete_state(0).value()[:3].tolist()
         pose = np.empty(7)
-        pose[:3] = self._canal.point(state.disk, state.eta, state.phi)
-        pose[3:] = self._canal.orientation(state.disk)
+        pose[:3] = self._canal.point(disk, eta, phi)
+        pose[3:] = self._canal.orientation(disk)
         output.set_value(pose)
 
     def _calc_weight(self, context: Context, output: BasicVector) -> None:

@@ -188,7 +188,7 @@ def _show(builder: DiagramBuilder, station: LioStation, meshcat: Meshcat, record
         builder.Connect(query, view.GetInputPort("query_object"))
 
 
-MEASURED = ("q", "X_BT", "gripper_state", "contact_forces", "penetration")
+MEASURED = ("q", "X_BT", "gripper_state", "contact_forces")
 """Ports of the station that are sampled at the control rate."""
-THINGS = ("item_poses", "item_bounds", "item_speeds")
+THINGS = ("item_poses", "item_bounds", "item_speeds", "penetration")
 """Ports of the station that are looked at 20 times a second."""

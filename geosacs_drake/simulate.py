@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 import signal
 import threading
 import time
@@ -74,6 +75,7 @@ def simulate(
         try:
             system.take_first_measurements(simulator.get_mutable_context())
             simulator.Initialize()
+            gc.freeze()  # what is built stays: no collection looks through it again
             while root.get_time() < duration - 1e-9:
                 begin, simulated = time.perf_counter(), root.get_time()
                 status = simulator.AdvanceTo(min(duration, simulated + CHUNK_S))
