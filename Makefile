@@ -22,8 +22,9 @@ laundry: setup
 relocation: setup
 	$(PY) -m geosacs_drake.run_relocation $(ARGS)
 
+# On both cores; `make test ARGS="-n 0 -k name"` for one test in this process.
 test: setup
-	$(PY) -m pytest $(ARGS)
+	$(PY) -m pytest -n 2 $(ARGS)
 
 lint: setup
 	$(PY) -m ruff check .
