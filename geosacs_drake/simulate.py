@@ -13,8 +13,8 @@ import numpy as np
 from pydrake.systems.analysis import Simulator, SimulatorStatus
 from pydrake.systems.framework import Context
 
+from diagrams.rest import Rest
 from diagrams.shared_autonomy import SharedAutonomy
-from diagrams.soft_rest import SoftRest
 from geosacs_drake.summary import RunResult
 
 CHUNK_S = 0.5
@@ -57,15 +57,14 @@ def simulate(
     simulator = Simulator(system.diagram)
     simulator.set_target_realtime_rate(rate)
     station = system.station
-    if station.scene.soft_items:
-        simulator.set_monitor(
-            SoftRest(
-                plant=station.plant,
-                scene_graph=station.scene_graph,
-                robot=station.scene.lio,
-                items=station.scene.soft_items,
-            )
+    simulator.set_monitor(
+        Rest(
+            plant=station.plant,
+            scene_graph=station.scene_graph,
+            robot=station.scene.lio,
+            items=station.scene.items,
         )
+    )
     root = simulator.get_context()
     monitor_context = system.monitor.GetMyContextFromRoot(root)
     interrupted = threading.Event()

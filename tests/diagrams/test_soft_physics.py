@@ -8,9 +8,9 @@ from pydrake.multibody.plant import AddMultibodyPlant, CoulombFriction, Multibod
 from pydrake.systems.framework import DiagramBuilder
 
 from benchmarks.soft_rig import CLOSED, OPEN, Rig, Setting
+from diagrams.rest import Rest
 from diagrams.soft_contact import SURROUNDINGS_GRADIENT, half_thickness
 from diagrams.soft_depth import FixedBoxes
-from diagrams.soft_rest import SoftRest
 from diagrams.soft_shapes import make_shape
 
 FLOOR = 0.3
@@ -72,7 +72,7 @@ def test_still_pieces_rest_and_wake_before_they_are_touched():
     shape = make_shape("sock")
     pieces = [("one", shape, [0.45, 0.0, 0.325], 0.0), ("other", shape, [0.45, 0.2, 0.325], 0.0)]
     rig = Rig(pieces, Setting())
-    rest = SoftRest(
+    rest = Rest(
         plant=rig.plant,
         scene_graph=rig.diagram.GetSubsystemByName("scene_graph"),
         robot=rig.palm.model_instance(),
