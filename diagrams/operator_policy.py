@@ -39,14 +39,6 @@ class Mode(IntEnum):
     FINISH = 7
 
 
-class Verdict(IntEnum):
-    """What the person thinks of a thing."""
-
-    TO_DO = 0
-    DONE = 1
-    GIVEN_UP = 2
-
-
 @dataclass(frozen=True)
 class Sight:
     """What the person sees at one moment."""
@@ -86,15 +78,15 @@ class OperatorState:
 
     @staticmethod
     def unpack(vector: np.ndarray, n: int) -> tuple["OperatorState", np.ndarray, np.ndarray]:
-        """The state, the verdicts (n,) and the tries (n,) from a vector of SIZE + 2n."""
+        """The state, which things are given up (n,) and the tries (n,) from a vector of SIZE + 2n."""
         size = OperatorState.SIZE
         return OperatorState(*vector[:size].tolist()), vector[size : size + n].copy(), vector[size + n :].copy()
 
-    def pack(self, verdicts: np.ndarray, tries: np.ndarray) -> np.ndarray:
+    def pack(self, given_up: np.ndarray, tries: np.ndarray) -> np.ndarray:
         """Inverse of `unpack`."""
         mind = (self.mode, self.thing, self.busy_until, self.stick_x, self.stick_y, self.stick_until)
         hand = (self.button, self.button_until, self.grip_height, self.aimed)
-        return np.concatenate([[*mind, *hand], verdicts, tries])
+        return np.concatenate([[*mind, *hand], given_up, tries])
 
 
 class OperatorPolicy:
@@ -135,12 +127,12 @@ class OperatorPolicy:
 
     def decide(self, vector: np.ndarray, sight: Sight, time: float) -> np.ndarray:
         """The state after a look at `sight`. One look, at most one push or press."""
-        state, verdicts, tries = OperatorState.unpack(vector, len(self.goals))
+        state, given_up, tries = OperatorState.unpack(vector, len(self.goals))
         if time < state.busy_until - EPSILON:
             return vector
         if sight.navigation.blocked:  # the arm has stopped against something: the way back is free
             self._press(state, Button.REVERSE, time)
-            return state.pack(verdicts, tries)
+            return state.pack(given_up, tries)
         {
             Mode.BEGIN: self._begin,
             Mode.PICK: self._pick,
@@ -150,16 +142,16 @@ class OperatorPolicy:
             Mode.PUSH: self._push,
             Mode.RETREAT: self._retreat,
             Mode.FINISH: self._finish,
-        }[Mode(int(state.mode))](state, verdicts, tries, sight, time)
-        return state.pack(verdicts, tries)
+        }[Mode(int(state.mode))](state, given_up, tries, sight, time)
+        return state.pack(given_up, tries)
 
     # ---- what to do in each mode: each changes the state in place ----
 
-    def _begin(self, state: OperatorState, verdicts: np.ndarray, tries: np.ndarray, sight: Sight, time: float) -> None:
+    def _begin(self, state: OperatorState, given_up: np.ndarray, tries: np.ndarray, sight: Sight, time: float) -> None:
         self._press(state, Button.START, time)
         state.mode = Mode.PICK
 
-    def _pick(self, state: OperatorState, verdicts: np.ndarray, tries: np.ndarray, sight: Sight, time: float) -> None:
+    def _pick(self, state: OperatorState, given_up: np.ndarray, tries: np.ndarray, sight: Sight, time: float) -> None:
         nav = sight.navigation
         if state.thing < 0:
             state.thing = float(self._hanging(tries, sight))
@@ -167,7 +159,7 @@ class OperatorPolicy:
                 tries[int(state.thing)] += 1
                 state.mode, state.aimed = Mode.PUSH, 0.0
                 return
-            self._choose(state, verdicts, tries, sight)
+            self._choose(state, given_up, tries, sight)
         if state.thing < 0:
             state.mode = Mode.FINISH
             return
@@ -186,28 +178,25 @@ class OperatorPolicy:
             state.grip_height = float(sight.p_BT[2])
             state.mode = Mode.LIFT
 
-    def _choose(self, state: OperatorState, verdicts: np.ndarray, tries: np.ndarray, sight: Sight) -> None:
+    def _choose(self, state: OperatorState, given_up: np.ndarray, tries: np.ndarray, sight: Sight) -> None:
         """The topmost thing that is still to do and lies where the canal's pick disk reaches."""
         canal = self.canal
         best, state.thing, state.aimed = -math.inf, -1.0, 0.0
-        for i, verdict in enumerate(verdicts):
-            if verdict == Verdict.GIVEN_UP:
-                continue
+        for i, position in enumerate(sight.positions):
             # Looked at anew each time: what lay well may have been knocked, or have rolled out.
-            verdicts[i] = Verdict.DONE if sight.placed[i] else Verdict.TO_DO
-            if sight.placed[i]:
+            if given_up[i] or sight.placed[i]:
                 continue
-            offset = sight.positions[i] - canal.center(0.0)
+            offset = position - canal.center(0.0)
             across = math.hypot(offset[0], offset[1])
             if tries[i] >= self.options.tries or across > 2 * canal.radius(0.0) + 0.1 or offset[2] < -0.15:
-                verdicts[i] = Verdict.GIVEN_UP
+                given_up[i] = 1.0
                 continue
             # One that was tried in vain comes last: something else may lie on it.
-            score = sight.positions[i][2] - 0.1 * across - tries[i]
+            score = position[2] - 0.1 * across - tries[i]
             if score > best:
                 best, state.thing = score, float(i)
 
-    def _lift(self, state: OperatorState, verdicts: np.ndarray, tries: np.ndarray, sight: Sight, time: float) -> None:
+    def _lift(self, state: OperatorState, given_up: np.ndarray, tries: np.ndarray, sight: Sight, time: float) -> None:
         risen = sight.p_BT[2] - state.grip_height > self.options.lift_m
         if not (risen or phase(self.canal, sight.navigation.disk) > -self.options.aim_from):
             return
@@ -217,7 +206,7 @@ class OperatorPolicy:
         else:
             self._try_again(state, tries)
 
-    def _carry(self, state: OperatorState, verdicts: np.ndarray, tries: np.ndarray, sight: Sight, time: float) -> None:
+    def _carry(self, state: OperatorState, given_up: np.ndarray, tries: np.ndarray, sight: Sight, time: float) -> None:
         nav, thing = sight.navigation, int(state.thing)
         held = sight.positions[thing] - sight.p_BT
         if np.linalg.norm(held) > 1.5 * self.options.lost_m:
@@ -235,7 +224,7 @@ class OperatorPolicy:
             self._press(state, Button.GRIPPER, time)
             state.mode = Mode.LEAVE
 
-    def _leave(self, state: OperatorState, verdicts: np.ndarray, tries: np.ndarray, sight: Sight, time: float) -> None:
+    def _leave(self, state: OperatorState, given_up: np.ndarray, tries: np.ndarray, sight: Sight, time: float) -> None:
         if phase(self.canal, sight.navigation.disk) > self.options.judge_at:
             return
         thing = int(state.thing)
@@ -253,7 +242,7 @@ class OperatorPolicy:
                 return i
         return -1
 
-    def _push(self, state: OperatorState, verdicts: np.ndarray, tries: np.ndarray, sight: Sight, time: float) -> None:
+    def _push(self, state: OperatorState, given_up: np.ndarray, tries: np.ndarray, sight: Sight, time: float) -> None:
         """Push in what hangs out: a closed gripper, and back along the same disks (paper VI, task 2)."""
         nav = sight.navigation
         if not nav.gripper_closed:
@@ -265,7 +254,7 @@ class OperatorPolicy:
             state.mode = Mode.RETREAT
 
     def _retreat(
-        self, state: OperatorState, verdicts: np.ndarray, tries: np.ndarray, sight: Sight, time: float
+        self, state: OperatorState, given_up: np.ndarray, tries: np.ndarray, sight: Sight, time: float
     ) -> None:
         if phase(self.canal, sight.navigation.disk) > self.options.judge_at:
             return
@@ -273,7 +262,7 @@ class OperatorPolicy:
             self._press(state, Button.GRIPPER, time)
         state.mode = Mode.LEAVE
 
-    def _finish(self, state: OperatorState, verdicts: np.ndarray, tries: np.ndarray, sight: Sight, time: float) -> None:
+    def _finish(self, state: OperatorState, given_up: np.ndarray, tries: np.ndarray, sight: Sight, time: float) -> None:
         nav = sight.navigation
         if nav.running and Leg(int(nav.leg)) in (Leg.HOME_TO_PICK, Leg.HOME_TO_PLACE):
             self._press(state, Button.STOP, time)
