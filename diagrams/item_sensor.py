@@ -11,7 +11,7 @@ from pydrake.systems.framework import BasicVector, Context, DiscreteValues, Leaf
 
 from diagrams.pose_vector import pose_to_vector
 from diagrams.scene import RigidItem, Scene
-from diagrams.shape_bounds import union_bounds
+from diagrams.shape_bounds import BodyBounds
 from diagrams.soft_items import SoftItem
 
 PERIOD = 0.01
@@ -35,6 +35,9 @@ class ItemSensor(LeafSystem):
         self._items = scene.items
         self._soft = [k for k, item in enumerate(scene.items) if isinstance(item, SoftItem)]
         self._soft_items = scene.soft_items
+        self._rigid = [k for k, item in enumerate(scene.items) if isinstance(item, RigidItem)]
+        self._bodies = [int(item.body.index()) for item in scene.rigid_items]
+        self._rigid_bounds = BodyBounds([item.extents for item in scene.rigid_items]) if self._rigid else None
         n = len(scene.items)
         self._poses = self.DeclareAbstractInputPort("body_poses", AbstractValue.Make([RigidTransform()]))
         self._velocities = self.DeclareAbstractInputPort("body_velocities", AbstractValue.Make([SpatialVelocity()]))
@@ -62,15 +65,14 @@ class ItemSensor(LeafSystem):
         output.SetFromVector(np.concatenate(rows))
 
     def _calc_bounds(self, context: Context, output: BasicVector) -> None:
-        poses = self._poses.Eval(context)
-        rows = []
-        for item in self._items:
-            if isinstance(item, RigidItem):
-                rows.append(union_bounds(item.extents, poses[int(item.body.index())]))
-            else:
-                nodes = self._nodes(context, item)
-                rows.append(np.concatenate([nodes.min(axis=0), nodes.max(axis=0)]))
-        output.SetFromVector(np.concatenate(rows))
+        bounds = np.empty((len(self._items), 6))
+        if self._rigid_bounds is not None:
+            poses = self._poses.Eval(context)
+            bounds[self._rigid] = self._rigid_bounds([poses[body] for body in self._bodies])
+        for k, item in zip(self._soft, self._soft_items, strict=True):
+            nodes = self._nodes(context, item)
+            bounds[k] = (*nodes.min(axis=0), *nodes.max(axis=0))
+        output.SetFromVector(bounds.ravel())
 
     def _calc_speeds(self, context: Context, output: BasicVector) -> None:
         velocities = self._velocities.Eval(context)

@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 from pydrake.geometry import Cylinder, GeometryId, SceneGraph
-from pydrake.math import RigidTransform, RollPitchYaw, RotationMatrix
+from pydrake.math import RigidTransform, RollPitchYaw
 from pydrake.multibody.parsing import Parser
 from pydrake.multibody.plant import MultibodyPlant
 from pydrake.multibody.tree import ModelInstanceIndex, RigidBody
@@ -14,7 +14,7 @@ from pydrake.multibody.tree import ModelInstanceIndex, RigidBody
 from canal.errors import InputError
 from diagrams.layout import Spot, draw_layout
 from diagrams.scenario import Item, Robot, Scenario, Thing
-from diagrams.shape_bounds import Extent, extent, union_bounds
+from diagrams.shape_bounds import BodyBounds, Extent, extent
 from diagrams.soft_items import SoftItem, add_soft_item
 from diagrams.soft_shapes import make_shape
 from models import LIO_URDF, MODELS
@@ -129,7 +129,7 @@ def _add_item(
     body = plant.get_body(index)
     inspector = scene_graph.model_inspector()
     extents = [e for g in plant.GetCollisionGeometriesForBody(body) if (e := extent(inspector, g)) is not None]
-    height = -float(union_bounds(extents, RigidTransform(RotationMatrix()))[2])
+    height = -float(BodyBounds([extents])([RigidTransform()])[0, 2])
     X.set_translation(start.position + [0, 0, height + DROP])
     plant.SetDefaultFloatingBaseBodyPose(body, X)
     return height, RigidItem(item.name, body, extents)
@@ -159,7 +159,7 @@ def check_overlaps(*, plant: MultibodyPlant, scene_graph: SceneGraph, context: o
             shape = extent(inspector, g)
             # An extent is in the body's frame.
             X_WP = query.GetPoseInWorld(inspector.GetFrameId(g))
-            boxes[g] = None if shape is None else shape.bounds(X_WP.rotation().matrix(), X_WP.translation())
+            boxes[g] = None if shape is None else np.split(BodyBounds([[shape]])([X_WP])[0], 2)
     for i, (name_a, of_a) in enumerate(solids):
         for name_b, of_b in solids[i + 1 :]:
             depth = max((_depth(query, boxes, a, b) for a in of_a for b in of_b), default=0.0)

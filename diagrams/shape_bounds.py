@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -21,22 +22,12 @@ from pydrake.math import RigidTransform
 
 @dataclass(frozen=True)
 class Extent:
-    """A convex shape in the frame P of its body, as what bounds need: a hull of points, swollen by an ellipsoid.
-
-    The bounds of R K along axis i reach from min_v (R v)_i to max_v (R v)_i over the points v, and further by
-    ‖S Rᵀ e_i‖ for the ellipsoid with half axes S (a disk or ball as a special case).
-    """
+    """A convex shape in the frame P of its body, as what bounds need: a hull of points, swollen by an ellipsoid."""
 
     points: np.ndarray
     """Shape (n, 3), in P [m]."""
     swell: np.ndarray
-    """Half axes of the ellipsoid, as rows of vectors in P [m]. Shape (3, 3)."""
-
-    def bounds(self, rotation: np.ndarray, position: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Least and greatest coordinates in W [m] for R_WP (3, 3) and p_WP (3,)."""
-        points = self.points @ rotation.T
-        swell = np.sqrt(np.square(self.swell @ rotation.T).sum(axis=0))
-        return position + points.min(axis=0) - swell, position + points.max(axis=0) + swell
+    """Half axes of the ellipsoid, as rows of vectors in P [m]. Shape (3, 3); a disk or ball is a special case."""
 
 
 def extent(inspector: SceneGraphInspector, geometry: GeometryId) -> Extent | None:
@@ -64,8 +55,31 @@ def extent(inspector: SceneGraphInspector, geometry: GeometryId) -> Extent | Non
     return Extent(points @ R.T + X.translation(), swell @ R.T)
 
 
-def union_bounds(extents: list[Extent], X_WP: RigidTransform) -> np.ndarray:
-    """Bounds of all shapes of a body: (min x, y, z, max x, y, z) in W [m]. Shape (6,)."""
-    R, p = X_WP.rotation().matrix(), X_WP.translation()
-    pairs = [e.bounds(R, p) for e in extents]
-    return np.concatenate([np.min([low for low, _ in pairs], axis=0), np.max([high for _, high in pairs], axis=0)])
+class BodyBounds:
+    """Bounds of many bodies at once, each a union of shapes.
+
+    The bounds of one shape along axis i reach from min_v (R v)_i to max_v (R v)_i over its points v, and further by
+    ‖S Rᵀ e_i‖ for its ellipsoid with half axes S.
+    """
+
+    def __init__(self, bodies: Sequence[Sequence[Extent]]) -> None:
+        """Stack the shapes of each of n bodies, one or more a body."""
+        shapes = [shape for body in bodies for shape in body]
+        self._points = np.concatenate([shape.points for shape in shapes])
+        self._swells = np.array([shape.swell for shape in shapes])
+        self._body_of_shape = np.repeat(np.arange(len(bodies)), [len(body) for body in bodies])
+        counts = [len(shape.points) for shape in shapes]
+        self._body_of_point = np.repeat(self._body_of_shape, counts)
+        self._shape_starts = np.cumsum([0, *counts[:-1]])
+        self._body_starts = np.cumsum([0, *(len(body) for body in bodies[:-1])])
+
+    def __call__(self, X_WP: Sequence[RigidTransform]) -> np.ndarray:
+        """Of bodies in these poses: (min x, y, z, max x, y, z) in W [m]. Shape (n, 6)."""
+        rotations = np.array([X.rotation().matrix() for X in X_WP])
+        origins = np.array([X.translation() for X in X_WP])[self._body_of_shape]
+        points = np.matmul(rotations[self._body_of_point], self._points[:, :, None])[:, :, 0]
+        swells = np.matmul(self._swells, rotations[self._body_of_shape].transpose(0, 2, 1))
+        swell = np.sqrt(np.square(swells).sum(axis=1))
+        low = origins + np.minimum.reduceat(points, self._shape_starts) - swell
+        high = origins + np.maximum.reduceat(points, self._shape_starts) + swell
+        return np.hstack([np.minimum.reduceat(low, self._body_starts), np.maximum.reduceat(high, self._body_starts)])

@@ -15,7 +15,7 @@ from pydrake.geometry import (
 from pydrake.math import RigidTransform, RotationMatrix
 from scipy.spatial.transform import Rotation
 
-from diagrams.shape_bounds import extent, union_bounds
+from diagrams.shape_bounds import BodyBounds, Extent, extent
 
 
 def pose(seed):
@@ -49,9 +49,15 @@ def test_bounds_are_tight(shape, seed):
     instance = GeometryInstance(X_PG, shape, "shape")
     instance.set_proximity_properties(ProximityProperties())
     geometry = scene_graph.RegisterAnchoredGeometry(source, instance)
-    bounds = union_bounds([extent(scene_graph.model_inspector(), geometry)], X_WP)
+    (bounds,) = BodyBounds([[extent(scene_graph.model_inspector(), geometry)]])([X_WP])
     points = X_WP.multiply(X_PG).multiply(surface(shape).T).T
     assert np.all(points >= bounds[:3] - 1e-9)
     assert np.all(points <= bounds[3:] + 1e-9)
     assert bounds[:3] == pytest.approx(points.min(axis=0), abs=2e-3)
     assert bounds[3:] == pytest.approx(points.max(axis=0), abs=2e-3)
+
+
+def test_a_body_is_the_union_of_its_shapes():
+    balls = [Extent(np.array([[x, 0.0, 0.0]]), 0.1 * np.eye(3)) for x in (0.0, 1.0, 5.0)]
+    bounds = BodyBounds([balls[:2], balls[2:]])([RigidTransform([0, 0, 1.0]), RigidTransform([0, 2.0, 0])])
+    assert bounds == pytest.approx(np.array([[-0.1, -0.1, 0.9, 1.1, 0.1, 1.1], [4.9, 1.9, -0.1, 5.1, 2.1, 0.1]]))
