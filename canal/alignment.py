@@ -3,21 +3,17 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from functools import cache
 
 import numpy as np
 from scipy.ndimage import gaussian_filter1d
-from scipy.spatial.distance import cdist
 
 from canal.errors import InputError
-from canal.trimming import Motion
+from canal.trimming import ROTATION_LENGTH_M, Motion
+from canal.warping import warping_path
 
 BAND = 0.15  # share of the length that the warping may run ahead or behind (Sakoe-Chiba)
 WARP_SMOOTHING = 0.03  # share of the length, σ of the smoothing of the warps
 ROUNDS = 3  # against the running mean, for three demonstrations and more
-# Squared distances are rounded to this, [m²] (4 µm at zero): sums of them are then exact, so that a tie is a
-# tie however the data are turned, and the warping path the same.
-_QUANTUM = 2.0**-36
 
 
 def align(motions: list[Motion], band: float = BAND, smoothing: float = WARP_SMOOTHING) -> np.ndarray:
@@ -43,17 +39,45 @@ def align(motions: list[Motion], band: float = BAND, smoothing: float = WARP_SMO
     n, m, _ = curves.shape
     identity = np.arange(m, dtype=float)
     if n == 2:
-        path = np.array(warping_path(curves[0], curves[1], band), dtype=float)
+        path = warping_path(curves[0], curves[1], band)
         return _centred(_smoothed(_along(path, path.mean(axis=1), m), smoothing * m))
     warps = np.tile(identity, (n, 1))
     for _ in range(ROUNDS):
         mean = np.mean([sample(curve, warp) for curve, warp in zip(curves, warps, strict=True)], axis=0)
         found = []
         for curve in curves:
-            path = np.array(warping_path(mean, curve, band), dtype=float)
+            path = warping_path(mean, curve, band)
             found.append(_along(path, path[:, 0], m)[1])
         warps = _centred(_smoothed(np.stack(found), smoothing * m))
     return warps
+
+
+def evenly_moving(motions: list[Motion], warps: np.ndarray) -> np.ndarray:
+    """The same alignment with a common parameter that is uniform in what all of them move, turns included.
+
+    Soft trimming squeezes slow ends and hesitations together in moved length. Knots uniform in that are far apart in
+    space there: curves missed the ends by 15-20 mm. The step of the parameter is the root mean square of the steps of
+    the demonstrations, sqrt(dp² + (λ dθ)²).
+
+    Args:
+        motions: n demonstrations of M points each.
+        warps: from `align`. Shape (n, M).
+
+    Returns:
+        Warps, as from `align`; their mean is no longer the identity. Shape (n, M).
+    """
+    m = warps.shape[1]
+    squared = np.zeros(m - 1)
+    for motion, warp in zip(motions, warps, strict=True):
+        squared += np.sum(np.diff(sample(motion.position, warp), axis=0) ** 2, axis=1)
+        # A step of a quaternion is half of the angle.
+        squared += (2.0 * ROTATION_LENGTH_M) ** 2 * np.sum(
+            np.diff(sample(motion.orientation, warp), axis=0) ** 2, axis=1
+        )
+    moved = np.concatenate([[0.0], np.cumsum(np.sqrt(squared / len(motions)))])
+    even = moved / moved[-1] + 1e-6 * np.linspace(0.0, 1.0, m)  # strictly increasing
+    at = np.interp(np.linspace(0.0, even[-1], m), even, np.arange(m, dtype=float))
+    return np.stack([np.interp(at, np.arange(m), warp) for warp in warps])
 
 
 def align_to(
@@ -74,7 +98,7 @@ def align_to(
     """
     _refuse_opposite([replace(motion, position=reference, name="the canal"), motion])
     m = len(reference)
-    path = np.array(warping_path(reference, motion.position, band), dtype=float)
+    path = warping_path(reference, motion.position, band)
     return _smoothed(_along(path, path[:, 0], m)[1:], smoothing * m)[0]
 
 
@@ -82,35 +106,6 @@ def sample(values: np.ndarray, at: np.ndarray) -> np.ndarray:
     """Values between the samples, linearly. `values` (M, k), `at` in [0, M - 1]; shape (len(at), k)."""
     grid = np.arange(len(values), dtype=float)
     return np.column_stack([np.interp(at, grid, column) for column in values.T])
-
-
-@cache
-def _tslearn_path():
-    """tslearn's `dtw_path_from_metric`, its just-in-time compilation off.
-
-    On a few hundred points compiling costs 5 s and running 30 ms; the result is bitwise the same.
-    """
-    from numba import config
-
-    before = getattr(config, "DISABLE_JIT", False)
-    setattr(config, "DISABLE_JIT", True)  # noqa: B010 (numba sets its options when it is imported)
-    try:
-        from tslearn.metrics import dtw_path_from_metric
-    finally:
-        setattr(config, "DISABLE_JIT", before)  # noqa: B010
-    return dtw_path_from_metric
-
-
-def warping_path(a: np.ndarray, b: np.ndarray, band: float) -> list[tuple[int, int]]:
-    """The path of pairs (i, j) from (0, 0) to (M - 1, M - 1) of least summed squared distance."""
-    squared = np.round(cdist(a, b, "sqeuclidean") / _QUANTUM) * _QUANTUM
-    path, _ = _tslearn_path()(
-        squared,
-        metric="precomputed",
-        global_constraint="sakoe_chiba",
-        sakoe_chiba_radius=max(1, round(band * len(a))),
-    )
-    return path
 
 
 def _along(path: np.ndarray, tau: np.ndarray, m: int) -> np.ndarray:

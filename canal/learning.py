@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from canal import orientation as orient
-from canal.alignment import BAND, WARP_SMOOTHING, align, sample
+from canal.alignment import BAND, WARP_SMOOTHING, align, evenly_moving, sample
 from canal.demonstration import Demonstration
 from canal.ellipses import FEWEST_FOR_ELLIPSES, disk_ellipses
 from canal.errors import InputError
@@ -100,7 +100,8 @@ def learn_canal(
     # A canonical order that a rigid motion of all the data does not change; the bytes decide on equal lengths.
     motions.sort(key=lambda m: (len(m[1]), round(m[0].length, 9), m[1].position.tobytes(), m[1].orientation.tobytes()))
     progress("aligning")
-    warps = align([motion for motion, _ in motions], options.band, options.warp_smoothing)
+    moving = [motion for motion, _ in motions]
+    warps = evenly_moving(moving, align(moving, options.band, options.warp_smoothing))
 
     progress("fitting")
     knots = knots_every(options.step)
