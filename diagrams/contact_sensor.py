@@ -78,4 +78,4 @@ class ContactSensor(LeafSystem):
         ]
         for item in self._soft:
             depths.append(self._boxes.depth(query.GetConfigurationsInWorld(item.geometry_id).reshape(-1, 3)))
-        output.SetFromVector([max(depths, default=0.0)])
+        output.SetAtIndex(0, max(depths, default=0.0))

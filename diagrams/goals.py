@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import Protocol
 
@@ -57,15 +58,15 @@ class DrumGoal:
 
     def placed(self, pose: np.ndarray, bounds: np.ndarray) -> bool:
         """The bounds lie behind the door's plane, and their middle in the cylinder of the drum."""
-        low, high = bounds[:3], bounds[3:]
-        ends = np.array([low, high]) - self.p_WD
-        depths = ends @ self.inward
-        middle = ends.mean(axis=0)
-        across = middle - (middle @ self.inward) * self.inward
-        return bool(
-            depths.min() >= -self.clearance
-            and depths.max() <= self.depth + self.clearance + BACK_WALL
-            and np.linalg.norm(across) <= self.radius
+        p, n = self.p_WD.tolist(), self.inward.tolist()
+        low = [b - o for b, o in zip(bounds[:3].tolist(), p, strict=True)]
+        high = [b - o for b, o in zip(bounds[3:].tolist(), p, strict=True)]
+        first, last = sorted((math.sumprod(low, n), math.sumprod(high, n)))
+        across = [(a + b) / 2 - (first + last) / 2 * c for a, b, c in zip(low, high, n, strict=True)]
+        return (
+            first >= -self.clearance
+            and last <= self.depth + self.clearance + BACK_WALL
+            and math.hypot(*across) <= self.radius
         )
 
 

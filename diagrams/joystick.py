@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 from pydrake.systems.framework import BasicVector, Context, DiagramBuilder, DiscreteValues, LeafSystem, OutputPort
 
@@ -19,12 +21,12 @@ def clean_joystick(values: np.ndarray) -> np.ndarray:
     """A joystick vector as promised, from whatever a device gave: not finite becomes 0, the stick within the unit
     disc, buttons 0 or 1. Shape (6,) to (6,).
     """
-    clean = np.nan_to_num(np.asarray(values, dtype=float), nan=0.0, posinf=0.0, neginf=0.0)
-    stick = np.clip(clean[:GRIPPER], -1.0, 1.0)
-    norm = float(np.hypot(*stick))
+    k_x, k_y, *levels = (v if math.isfinite(v) else 0.0 for v in np.asarray(values, dtype=float).tolist())
+    k_x, k_y = (min(max(k, -1.0), 1.0) for k in (k_x, k_y))
+    norm = math.hypot(k_x, k_y)
     if norm > 1 + 1e-9:  # the margin makes cleaning twice the same as once, bit for bit
-        stick = stick / norm
-    return np.concatenate([stick, clean[GRIPPER:] > 0.5])
+        k_x, k_y = k_x / norm, k_y / norm
+    return np.array((k_x, k_y, *(float(level > 0.5) for level in levels)))
 
 
 def is_touched(joystick: np.ndarray) -> bool:
@@ -117,11 +119,12 @@ class JoystickSelector(LeafSystem):
 
     def _in_charge(self, context: Context) -> bool:
         # The touch counts in the very sample that shows it; the state only remembers it.
-        latched = context.get_discrete_state(self._latch).value()[0] > 0.5
-        return latched or is_touched(self._person_joystick(context))
+        if context.get_discrete_state(self._latch).value().item(0) > 0.5:
+            return True
+        return self._person.HasValue(context) and is_touched(self._person_joystick(context))
 
     def _update(self, context: Context, discrete: DiscreteValues) -> None:
-        discrete.set_value(0, [float(self._in_charge(context))])
+        discrete.set_value(0, np.array((float(self._in_charge(context)),)))
 
     def _calc_joystick(self, context: Context, output: BasicVector) -> None:
         if self._in_charge(context):
@@ -132,4 +135,4 @@ class JoystickSelector(LeafSystem):
             output.set_value(np.zeros(JOYSTICK_SIZE))
 
     def _calc_in_charge(self, context: Context, output: BasicVector) -> None:
-        output.set_value([float(self._in_charge(context))])
+        output.SetAtIndex(0, float(self._in_charge(context)))

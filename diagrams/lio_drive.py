@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 from pydrake.systems.framework import BasicVector, Context, DiscreteValues, LeafSystem
 
@@ -41,17 +43,18 @@ class LioDrive(LeafSystem):
         self.DeclarePeriodicDiscreteUpdateEvent(PERIOD, 0.0, self._update)
 
     def _update(self, context: Context, discrete: DiscreteValues) -> None:
-        last = context.get_discrete_state(self._state).value()
-        closed = self._command.Eval(context)[0] > 0.5
+        target, _, *q = context.get_discrete_state(self._state).value().tolist()
+        closed = self._command.Eval(context).item(0) > 0.5
         step = GRIPPER_SPEED * PERIOD
-        target = min(max(CLOSE_TARGET if closed else OPEN_ANGLE, last[0] - step), last[0] + step)
-        desired = self._desired.Eval(context)
-        q = desired[:ARM] if np.isfinite(desired).all() else last[2:]
-        discrete.set_value(self._state, np.concatenate([[target, (target - last[0]) / PERIOD], q]))
+        next_target = min(max(CLOSE_TARGET if closed else OPEN_ANGLE, target - step), target + step)
+        desired = self._desired.Eval(context).tolist()
+        if all(map(math.isfinite, desired)):
+            q = desired[:ARM]
+        discrete.set_value(self._state, np.array((next_target, (next_target - target) / PERIOD, *q)))
 
     def _calc(self, context: Context, output: BasicVector) -> None:
-        state = context.get_discrete_state(self._state).value()
-        desired = self._desired.Eval(context)
-        if not np.isfinite(desired).all():
-            desired = np.concatenate([state[2:], np.zeros(ARM)])
-        output.SetFromVector([*desired[:ARM], state[0], *desired[ARM:], state[1]])
+        target, rate, *q = context.get_discrete_state(self._state).value().tolist()
+        desired = self._desired.Eval(context).tolist()
+        if not all(map(math.isfinite, desired)):
+            desired = q + [0.0] * ARM
+        output.set_value(np.array((*desired[:ARM], target, *desired[ARM:], rate)))

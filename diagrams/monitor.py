@@ -1,5 +1,6 @@
 """The monitor: the study's measures, success, safety, and the end of a run with a reason (SPEC section 7)."""
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -98,18 +99,20 @@ class Monitor(LeafSystem):
     def _watch(self, context: Context, discrete: DiscreteValues) -> None:
         forces = self._forces.Eval(context)
         peaks = np.maximum(context.get_discrete_state(self._peaks).value(), forces)
-        distance, penetration = context.get_discrete_state(self._measures).value()
-        started, was_correcting, *last = context.get_discrete_state(self._last).value()
-        navigation = NavigationState.from_vector(self._navigation.Eval(context))
-        p_BT = self._X_BT.Eval(context)[:3]
-        if navigation.correcting and was_correcting:
-            distance += float(np.linalg.norm(p_BT - last))
-        penetration = float(np.fmax(penetration, self._penetration.Eval(context)[0]))
-        alarm = forces.size > 0 and forces.max() > self._options.force_limit_n
+        distance, penetration = context.get_discrete_state(self._measures).value().tolist()
+        started, was_correcting, *last = context.get_discrete_state(self._last).value().tolist()
+        navigation = self._navigation.Eval(context)
+        correcting, running = navigation.item(CORRECTING), navigation.item(RUNNING)
+        p_BT = self._X_BT.Eval(context)[:3].tolist()
+        if correcting and was_correcting:
+            distance += math.dist(p_BT, last)
+        now = self._penetration.Eval(context).item(0)
+        penetration = now if now > penetration else penetration
+        alarm = max(forces.tolist(), default=0.0) > self._options.force_limit_n
         discrete.set_value(self._peaks, peaks)
-        discrete.set_value(self._measures, [distance, penetration])
-        discrete.set_value(self._alarm, [float(alarm)])
-        discrete.set_value(self._last, [float(started or navigation.running), navigation.correcting, *p_BT])
+        discrete.set_value(self._measures, np.array((distance, penetration)))
+        discrete.set_value(self._alarm, np.array((float(alarm),)))
+        discrete.set_value(self._last, np.array((float(started or running), correcting, *p_BT)))
 
     def _judge(self, context: Context, discrete: DiscreteValues) -> EventStatus:
         options, n = self._options, self._n
@@ -138,5 +141,7 @@ class Monitor(LeafSystem):
         return EventStatus.Succeeded()
 
 
+CORRECTING, RUNNING = FIELD_NAMES.index("correcting"), FIELD_NAMES.index("running")
+"""Places in the navigation state: of 21 numbers these two are all that is needed 100 times a second."""
 JUDGING_PERIOD = 0.05
 """[s] The things are judged 20 times a second."""

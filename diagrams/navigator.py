@@ -74,8 +74,8 @@ class CanalNavigator(LeafSystem):
 
     def _update(self, context: Context, discrete: DiscreteValues) -> None:
         joystick = self._joystick.Eval(context)
-        moving = abs(self._gripper_state.Eval(context)[1]) > FINGERS_MOVING
-        alarm = self._alarm.HasValue(context) and self._alarm.Eval(context)[0] > 0.5
+        moving = abs(self._gripper_state.Eval(context).item(1)) > FINGERS_MOVING
+        alarm = self._alarm.HasValue(context) and self._alarm.Eval(context).item(0) > 0.5
         state = step(
             self._canal,
             self.state(context),
@@ -95,10 +95,10 @@ class CanalNavigator(LeafSystem):
         output.set_value(pose)
 
     def _calc_weight(self, context: Context, output: BasicVector) -> None:
-        output.set_value([self._canal.weight(context.get_discrete_state(0).value()[DISK])])
+        output.SetAtIndex(0, self._canal.weight(context.get_discrete_state(0).value().item(DISK)))
 
     def _calc_gripper(self, context: Context, output: BasicVector) -> None:
-        output.set_value([context.get_discrete_state(0).value()[GRIPPER_CLOSED]])
+        output.SetAtIndex(0, context.get_discrete_state(0).value().item(GRIPPER_CLOSED))
 
 
 DISK = FIELD_NAMES.index("disk")

@@ -9,7 +9,7 @@ from pydrake.math import RigidTransform
 
 def pose_to_vector(X: RigidTransform) -> np.ndarray:
     """Position and quaternion. Shape (7,)."""
-    return np.concatenate([X.translation(), X.rotation().ToQuaternion().wxyz()])
+    return np.concatenate((X.translation(), X.rotation().ToQuaternion().wxyz()))
 
 
 def vector_to_pose(vector: np.ndarray) -> RigidTransform:

@@ -75,8 +75,8 @@ class BodyBounds:
 
     def __call__(self, X_WP: Sequence[RigidTransform]) -> np.ndarray:
         """Of bodies in these poses: (min x, y, z, max x, y, z) in W [m]. Shape (n, 6)."""
-        rotations = np.array([X.rotation().matrix() for X in X_WP])
-        origins = np.array([X.translation() for X in X_WP])[self._body_of_shape]
+        poses = np.array([X.GetAsMatrix34() for X in X_WP])
+        rotations, origins = poses[:, :, :3], poses[self._body_of_shape, :, 3]
         points = np.matmul(rotations[self._body_of_point], self._points[:, :, None])[:, :, 0]
         swells = np.matmul(self._swells, rotations[self._body_of_shape].transpose(0, 2, 1))
         swell = np.sqrt(np.square(swells).sum(axis=1))
