@@ -6,6 +6,7 @@ path goes on from the project's own answer. Once as fast as they can ("tight"), 
 """
 
 import argparse
+import logging
 import time
 from collections import defaultdict
 from collections.abc import Iterable
@@ -15,6 +16,7 @@ import numpy as np
 from scipy.optimize import minimize
 
 from benchmarks.ik_cases import DT, Case, adversarial_cases, demonstration_cases
+from benchmarks.ik_clear import keep_clear
 from benchmarks.ik_fuzz import fuzz
 from benchmarks.ik_rivals import SAME_OBJECTIVE, Contender, contenders
 from benchmarks.table import Row, print_table, write_csv
@@ -35,6 +37,7 @@ def main() -> None:
     parser.add_argument("--output", type=Path, default=Path("build/bench-ik.csv"))
     arguments = parser.parse_args()
 
+    logging.getLogger("drake").setLevel(logging.WARNING)  # Clarabel reports each step that it cannot improve
     solver = IkSolver(make_arm_plant(), TCP_FRAME)
     field = contenders(solver)
     rng = np.random.default_rng(0)
@@ -60,6 +63,7 @@ def main() -> None:
         for mode, samples in (("tight", pooled), ("paced", paced)):
             ratio = float(np.median(samples[name]["time"]) / np.median(samples["this"]["time"]))
             rows.append(Row(f"demonstrations, {mode}", name, "time over this", ratio, "1"))
+    rows += keep_clear()
     rows += fuzz(solver, arguments.fuzz)
     write_csv(arguments.output, rows)
     print_table([row for row in rows if " w=" not in row.case])

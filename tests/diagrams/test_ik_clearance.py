@@ -3,47 +3,17 @@
 import numpy as np
 import pytest
 from ik_arm import TCP, lio_plant, pose_of
-from pydrake.geometry import Box, Sphere
-from pydrake.math import RigidTransform
-from pydrake.multibody.parsing import Parser
-from pydrake.multibody.plant import AddMultibodyPlantSceneGraph, CoulombFriction, MultibodyPlant
-from pydrake.multibody.tree import SpatialInertia
-from pydrake.systems.framework import Diagram, DiagramBuilder
+from pydrake.geometry import Sphere
 
+from benchmarks.ik_clear import MARGIN, Q_FRONT, arm_and, deep_path, least_distance, solver_beside_wall
 from canal.errors import InputError
 from diagrams.clear_arm import make_lio_solver
 from diagrams.ik_options import IkOptions, IkStatus, KeepClearOptions
 from diagrams.ik_solver import IkSolver
 from diagrams.lio_station import START_POSTURE
 from diagrams.scenario import load_scenario
-from models import LIO_URDF
 
 DT = 0.01
-MARGIN = 0.02
-# Reaching forwards, x_T = 0.48 m.
-Q_FRONT = np.array([-1.6, -0.8, 1.9, 0.0, 0.6, 0.0])
-# A wall in front of the robot: its near face lies at x = 0.60.
-WALL_X = 0.60
-
-
-def arm_and(shape: Box | Sphere, p: list[float]) -> tuple[MultibodyPlant, Diagram]:
-    """The Lio and one solid body, welded at p [m]."""
-    builder = DiagramBuilder()
-    plant, _ = AddMultibodyPlantSceneGraph(builder, 0.0)
-    Parser(plant).AddModels(str(LIO_URDF))
-    plant.WeldFrames(plant.world_frame(), plant.GetFrameByName("lio_base"))
-    model = plant.AddModelInstance("obstacle")
-    body = plant.AddRigidBody("obstacle", model, SpatialInertia.SolidBoxWithMass(1.0, 0.1, 0.1, 0.1))
-    plant.RegisterCollisionGeometry(body, RigidTransform(), shape, "obstacle", CoulombFriction(0.5, 0.5))
-    plant.WeldFrames(plant.world_frame(), body.body_frame(), RigidTransform(p))
-    plant.Finalize()
-    return plant, builder.Build()
-
-
-def solver_beside_wall(**options: object) -> IkSolver:
-    plant, diagram = arm_and(Box(0.2, 2.0, 2.0), [WALL_X + 0.1, 0.0, 1.0])
-    keep_clear = KeepClearOptions(margin=MARGIN, solid_bodies=["obstacle"], **options)  # type: ignore[arg-type]
-    return IkSolver(plant, TCP, IkOptions(keep_clear=keep_clear), diagram=diagram)
 
 
 @pytest.fixture(scope="module")
@@ -51,29 +21,9 @@ def solver() -> IkSolver:
     return solver_beside_wall()
 
 
-def deep_path(reach: float) -> list[np.ndarray]:
-    """Targets that sweep past the wall, from 0.48 m in x to `reach` and back, with the gripper forwards."""
-    start = pose_of(IkSolver(lio_plant(), TCP), Q_FRONT)
-    shares = 0.5 - 0.5 * np.cos(np.linspace(0.0, 2.0 * np.pi, 400))
-    path = []
-    for share in shares:
-        X = start.copy()
-        X[0] += share * (reach - start[0])
-        X[1:3] += np.array([0.1, -0.05]) * share
-        path.append(X)
-    return path
-
-
-def least_distance(solver: IkSolver, q: np.ndarray) -> float:
-    assert solver.clearance is not None
-    solver.kinematics.set(q)
-    return solver.clearance.least()
-
-
 def test_a_path_40_mm_into_an_obstacle_is_followed_at_20_mm(solver: IkSolver) -> None:
     blind = IkSolver(lio_plant(), TCP)
-    # The open fingers' tips go a little before the tool's point: find how deep the blind arm goes at a given reach.
-    path = deep_path(WALL_X + 0.015)
+    path = deep_path()
     q_clear = q_blind = Q_FRONT
     v = np.zeros(6)
     depth, nearest, at_margin = np.inf, np.inf, 0
@@ -104,7 +54,7 @@ def test_beside_the_margin_the_answer_is_the_unconstrained_one(solver: IkSolver)
 def test_at_the_margin_the_status_says_so(solver: IkSolver) -> None:
     q = Q_FRONT
     for _ in range(200):
-        result = solver.solve(deep_path(WALL_X + 0.015)[200], 15.0, q, DT)
+        result = solver.solve(deep_path()[200], 15.0, q, DT)
         q = result.q
     assert result.status in (IkStatus.AT_BOUND, IkStatus.OUT_OF_REACH)
     assert result.clearance >= MARGIN
@@ -114,7 +64,7 @@ def test_a_start_inside_an_obstacle_finds_the_way_out() -> None:
     solver = solver_beside_wall()
     blind = IkSolver(lio_plant(), TCP)
     q = Q_FRONT
-    for X in deep_path(WALL_X + 0.015)[:200]:
+    for X in deep_path()[:200]:
         q = blind.solve(X, 15.0, q, DT).q
     inside = least_distance(solver, q)
     assert inside < -0.04
