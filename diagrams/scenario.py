@@ -80,7 +80,7 @@ class Drum:
     center: list[float] = field(default_factory=lambda: [0.0, 0.85, 0.55])
     """Centre of the door's plane in W [m]."""
     inward: list[float] = field(default_factory=lambda: [0.0, 1.0, 0.0])
-    """Unit vector along the drum's axis in W."""
+    """The drum's axis, into the machine: along an axis of W, as the things' bounds are. Turn the robot instead."""
     depth: float = 0.34
     radius: float = 0.25
 
@@ -115,6 +115,9 @@ class Retarget:
 
     pick: list[float] = field(default_factory=list)
     place: list[float] = field(default_factory=list)
+    pick_yaw_deg: float = 0.0
+    """By how much the orientation is turned about the vertical."""
+    place_yaw_deg: float = 0.0
 
 
 @dataclass
@@ -263,10 +266,18 @@ def validate(scenario: Scenario) -> None:
     if scenario.drum is not None:
         _numbers("drum.center", scenario.drum.center, 3)
         _numbers("drum.inward", scenario.drum.inward, 3)
+        if sorted(map(abs, scenario.drum.inward)) != [0.0, 0.0, 1.0]:
+            raise InputError(
+                f"drum.inward is {scenario.drum.inward}; give a unit vector along an axis of W, and turn the robot "
+                "(robot.yaw_deg) where the machine stands askew"
+            )
     for end in ("pick", "place"):
         pose = getattr(scenario.retarget, end)
         if pose:
             _numbers(f"retarget.{end}", pose, 7 if len(pose) > 3 else 3)
+        yaw = getattr(scenario.retarget, f"{end}_yaw_deg")
+        if not math.isfinite(yaw):
+            raise InputError(f"retarget.{end}_yaw_deg is {yaw}; give a finite number")
     for plane in scenario.support_planes:
         _numbers("support_planes.normal", plane.normal, 3)
     if scenario.canal is None and not scenario.demonstrations:

@@ -7,6 +7,8 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import NoReturn
 
+import numpy as np
+from scipy.spatial.transform import Rotation
 from tqdm import tqdm
 
 from canal.demonstration import load_demonstration, write_npz
@@ -19,7 +21,7 @@ from diagrams.meshcat_joystick import CONTROLS
 from diagrams.meshcat_recording import Recording
 from diagrams.meshcat_server import leave, start_meshcat
 from diagrams.run_log import named_signals
-from diagrams.scenario import Scenario, load_scenario, with_items
+from diagrams.scenario import Retarget, Scenario, load_scenario, with_items
 from diagrams.shared_autonomy import build_shared_autonomy
 from geosacs_drake.command_line import ExitStatus, end, parse_options
 from geosacs_drake.options import PEOPLE, RunOptions
@@ -87,12 +89,23 @@ def prepare_canal(scenario: Scenario, options: RunOptions) -> CanalSurface:
     """The canal that the options or the scenario name: loaded, or learned; moved to where the task is now."""
     planes = tuple(SupportPlane(tuple(p.normal), p.offset) for p in scenario.support_planes)  # type: ignore[arg-type]
     canal = _load_or_learn(scenario, options, planes)
-    ends = {end: getattr(scenario.retarget, end) or None for end in ("pick", "place")}
-    if any(ends.values()):
-        canal = retarget(canal, **ends, support_planes=planes or None)
+    if scenario.retarget != Retarget():
+        to = scenario.retarget
+        pick = _moved(canal, 0, to.pick, to.pick_yaw_deg)
+        place = _moved(canal, -1, to.place, to.place_yaw_deg)
+        canal = retarget(canal, pick, place, support_planes=planes or None)
     for warning in canal.warnings:
         print(f"canal: {warning}", file=sys.stderr)
     return canal
+
+
+def _moved(canal: CanalSurface, disk: int, pose: list[float], yaw_deg: float) -> np.ndarray:
+    """The pose of an end of the canal with what is given in its place, turned about the vertical. Shape (7,)."""
+    own = np.concatenate([canal.directrix[disk], canal.orientations[disk]])
+    own[: len(pose)] = pose
+    turn = Rotation.from_euler("z", yaw_deg, degrees=True)
+    own[3:] = (turn * Rotation.from_quat(own[3:], scalar_first=True)).as_quat(scalar_first=True)
+    return own
 
 
 def _load_or_learn(scenario: Scenario, options: RunOptions, planes: tuple[SupportPlane, ...]) -> CanalSurface:

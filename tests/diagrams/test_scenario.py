@@ -11,7 +11,16 @@ from diagrams.layout import draw_layout
 from diagrams.scenario import load_scenario, shipped_scenarios, with_items
 from models import SCENARIOS
 
-NAMED = ["laundry", "laundry-crowded", "laundry-hanging", "laundry-narrow", "relocation", "relocation-far"]
+NAMED = [
+    "laundry",
+    "laundry-crowded",
+    "laundry-hanging",
+    "laundry-moved",
+    "laundry-narrow",
+    "laundry-turned",
+    "relocation",
+    "relocation-far",
+]
 
 
 def test_those_named_ship():
@@ -64,6 +73,9 @@ def test_unknown_name_lists_those_that_ship():
         ({"item_spacing": "abc"}, "item_spacing is 'abc'; give a number"),
         ({"drum": 7}, "drum is 7; give keys among center"),
         ({"drum": {"depth": "deep"}}, "drum.depth is 'deep'; give a number"),
+        ({"drum": {"inward": [0.5, 0.866, 0.0]}}, "drum.inward is [0.5, 0.866, 0.0]; give a unit vector along an axis"),
+        ({"retarget": {"pick": [0.4, 0.1]}}, "retarget.pick is [0.4, 0.1]; give 3 finite numbers"),
+        ({"retarget": {"pick_yaw_deg": float("inf")}}, "retarget.pick_yaw_deg is inf; give a finite number"),
         ({"things": 5}, "things is 5; give a list"),
         ({"things": [{"name": "a", "model": "nothing"}]}, "'nothing' does not exist; give a file or one of basket"),
         ({"items": []}, "items is empty"),
