@@ -85,7 +85,7 @@ def test_laws_of_a_canal_from_any_hands(demonstrations):
         assert quality.crossing <= ROOM
 
 
-@pytest.mark.parametrize("seed", range(8))
+@pytest.mark.parametrize("seed", [*range(8), 24])  # the last is the worst of thirty
 def test_pick_and_place_meets_the_figures(seed):
     demonstrations = hard_demonstrations(seed, 2 + seed % 4)
     canal = learn_canal(demonstrations)
