@@ -28,6 +28,8 @@ STILL = 0.003  # [m/s], of the fastest node; settled piles creep at 0.0001
 UNMOVED = 0.05  # [m/s²]: where a rocking bundle turns it has no speed either, but 0.1 and more of this
 NEAR = 0.012  # [m] between bounds; what moves may come nearer than this by two periods of its speed
 ROBOT_NEAR = 0.025  # [m], between bounds: at 1 m/s the robot needs more than a period for this
+# Bounds of a soft piece are those of each triangle of its surface: a long one that lies aslant has a large box around
+# it, and would be woken by what only passes.
 
 
 class _Piece(Protocol):
@@ -124,7 +126,9 @@ class Rest:
                 links[body] = extents
         self._n_links = len(links)
         self._rigid = [k for k, item in enumerate(items) if isinstance(item, RigidItem)]
-        self._soft = [(k, item) for k, item in enumerate(items) if isinstance(item, SoftItem)]
+        self._soft = [
+            (k, item, item.shape.mesh.boundary()) for k, item in enumerate(items) if isinstance(item, SoftItem)
+        ]
         rigid_items = [item for item in items if isinstance(item, RigidItem)]
         self._bodies = [*links, *(item.body for item in rigid_items)]
         self._bounds = BodyBounds([*links.values(), *(item.extents for item in rigid_items)])
@@ -154,14 +158,25 @@ class Rest:
         bounds = self._bounds([self._plant.EvalBodyPoseInWorld(context, body) for body in self._bodies])
         links, pieces = bounds[: self._n_links], np.empty((len(self._pieces), 6))
         pieces[self._rigid] = bounds[self._n_links :]
-        for k, item in self._soft:
+        parts = {k: pieces[k : k + 1] for k in self._rigid}
+        for k, item, triangles in self._soft:
             nodes = soft_positions(self._plant, context, item)
+            corners = nodes[triangles]
+            parts[k] = np.hstack([corners.min(axis=1), corners.max(axis=1)])
             pieces[k] = (*nodes.min(axis=0), *nodes.max(axis=0))
         sizes = np.linalg.norm(pieces[:, 3:] - pieces[:, :3], axis=1) / 2
         speed = np.array([p.speed(context, size) for p, size in zip(self._pieces, sizes, strict=True)])
-        active = (speed > STILL) | (_gaps(pieces, links) < ROBOT_NEAR).any(axis=1)
+        touched = _gaps(pieces, links) < ROBOT_NEAR
+        for k, *_ in self._soft:
+            if touched[k].any():
+                touched[k] = (_gaps(parts[k], links) < ROBOT_NEAR).any(axis=0)
+        active = (speed > STILL) | touched.any(axis=1)
         reach = NEAR + 2.0 * PERIOD * np.where(np.isfinite(speed), speed, 0.0)
-        near = _gaps(pieces, pieces) < np.maximum(reach[:, None], reach[None, :])
+        reach = np.maximum(reach[:, None], reach[None, :])
+        near = _gaps(pieces, pieces) < reach
+        for i, *_ in self._soft:
+            for j in np.flatnonzero(near[i]).tolist():
+                near[i, j] = near[j, i] = i == j or (_gaps(parts[i], parts[j]) < reach[i, j]).any()
         return active | (near & active[None, :]).any(axis=1)
 
 

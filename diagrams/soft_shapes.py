@@ -166,7 +166,7 @@ def _sock(color: Rgb | None, segments: int) -> SoftShape:
         return _shade(colors, fold(s, angle))
 
     builder = TetBuilder()
-    builder.add_tube(tube, segments or 6)
+    builder.add_tube(tube, segments or 5)
     return _finish("sock", builder.mesh(), [_Skin(tube, 28, 18, fold, paint, _plain(white))], mass=0.06)
 
 
@@ -182,7 +182,7 @@ def _tshirt(color: Rgb | None, segments: int) -> SoftShape:
         lambda s: 0.033 - 0.004 * s,
     )
     builder = TetBuilder()
-    segments = segments or 6
+    segments = segments or 5
     sections = builder.add_tube(body, segments)
     sleeves = []
     for sign, side in ((1, 0), (-1, 2)):
@@ -246,7 +246,7 @@ def _towel(color: Rgb | None, segments: int) -> SoftShape:
         return np.where((turn < 0.35)[..., None], np.array(_mix(base, (0.0, 0.0, 0.0), 0.6)), np.array(base))
 
     builder = TetBuilder()
-    builder.add_tube(tube, segments or 7)
+    builder.add_tube(tube, segments or 5)
     return _finish("towel", builder.mesh(), [_Skin(tube, 30, 24, fold, paint, layers)], mass=0.30)
 
 

@@ -78,7 +78,7 @@ def washing_machine(name: str, opening: float) -> None:
     # The drum: staves, and a back.
     # 45 mm, though less would look the same: cloth that falls 0.2 m sinks in by 13 mm in one step of 5 ms, and what is
     # past the middle of a wall comes out on the other side.
-    ring(link, DRUM_RADIUS, DRUM_RADIUS + 0.045, 0.02, DRUM_DEPTH + 0.03, sides=20)
+    ring(link, DRUM_RADIUS, DRUM_RADIUS + 0.045, 0.02, DRUM_DEPTH + 0.03, sides=12)
     reach = DRUM_RADIUS + 0.03
     link.collision(box((2 * reach, 0.03, 2 * reach)), STEEL, (0, DRUM_DEPTH + 0.015, DOOR_HEIGHT))
     # The case.
