@@ -7,6 +7,7 @@ from pydrake.math import RigidTransform, RollPitchYaw
 from pydrake.multibody.plant import AddMultibodyPlant, CoulombFriction, MultibodyPlantConfig
 from pydrake.systems.framework import DiagramBuilder
 
+from benchmarks.half_step import apart
 from benchmarks.soft_rig import CLOSED, OPEN, Rig, Setting
 from diagrams.rest import Rest
 from diagrams.soft_contact import SURROUNDINGS_GRADIENT, half_thickness
@@ -96,6 +97,11 @@ def test_still_pieces_rest_and_wake_before_they_are_touched():
     rig.move([x, y, 0.45, 0.0, CLOSED], 0.6)
     assert awake() == [True, False]
     assert rig.nodes(0)[:, 2].min() > FLOOR + 0.03
+
+
+@pytest.mark.parametrize(("soft", "bound"), [(True, 0.010), (False, 0.025)])
+def test_half_the_time_step_ends_in_the_same_place(soft, bound):
+    assert apart("towel", soft=soft, turns=(0.4,)) < bound
 
 
 def test_every_rigid_shape_has_the_gradient_that_suits_cloth(sock_rig):
