@@ -26,7 +26,7 @@ class RunOptions:
     duration: float = 900.0
     """Longest simulated time [s]; what is not done by then is not done."""
     items: Literal["soft", "rigid"] | None = None
-    """Soft clothes (finite elements) or rigid bodies. Default: as the scenario says."""
+    """Soft clothes (finite elements) or rigid bodies. Default: as the scenario says; soft in laundry."""
     scenario: str | None = None
     """A scenario file (.yaml), or the name of one that ships."""
     demos: tuple[Path, ...] = ()

@@ -76,8 +76,8 @@ def washing_machine(name: str, opening: float) -> None:
     for low, high in ((0.0, DOOR_HEIGHT - inner), (DOOR_HEIGHT + inner, HEIGHT)):
         link.collision(box((2 * inner, 0.03, high - low)), STEEL, (0, 0.015, (low + high) / 2))
     # The drum: staves, and a back.
-    # 45 mm, though less would look the same: cloth that falls 0.2 m sinks in by 13 mm in one step of 5 ms, and what is
-    # past the middle of a wall comes out on the other side.
+    # 45 mm, though less would look the same: cloth that falls 0.2 m sinks in by 10 mm in one step of 5 ms, and what is
+    # past the middle of a wall comes out on the other side. Twelve, since each overlap is computed twice.
     ring(link, DRUM_RADIUS, DRUM_RADIUS + 0.045, 0.02, DRUM_DEPTH + 0.03, sides=12)
     reach = DRUM_RADIUS + 0.03
     link.collision(box((2 * reach, 0.03, 2 * reach)), STEEL, (0, DRUM_DEPTH + 0.015, DOOR_HEIGHT))

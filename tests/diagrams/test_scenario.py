@@ -49,19 +49,20 @@ def test_layout_is_the_seeds():
 def test_a_region_too_small_is_refused():
     scenario = load_scenario("laundry")
     scenario.item_spacing = 0.5
-    with pytest.raises(InputError, match=r"items\.tshirt\.start leaves no place that is 0\.5 m"):
+    with pytest.raises(InputError, match=r"items\.tshirt\.soft_start leaves no place that is 0\.5 m"):
         draw_layout(scenario, 0)
 
 
 def test_items_kind_of_laundry_only():
-    assert {i.kind for i in with_items(load_scenario("laundry"), "soft").items} == {"soft"}
+    assert {i.kind for i in load_scenario("laundry").items} == {"soft"}  # unless asked otherwise
+    assert {i.kind for i in with_items(load_scenario("laundry"), "rigid").items} == {"rigid"}
     assert {i.kind for i in with_items(load_scenario("relocation"), "soft").items} == {"rigid"}
     with pytest.raises(InputError, match="'firm'"):
         with_items(load_scenario("laundry"), "firm")
 
 
 def test_unknown_name_lists_those_that_ship():
-    with pytest.raises(InputError, match=r"'landry' does not exist; .*laundry, laundry-crowded"):
+    with pytest.raises(InputError, match=r"'landry' does not exist; .*laundry, .*laundry-crowded"):
         load_scenario("landry")
 
 
