@@ -8,10 +8,10 @@ import numpy as np
 from scipy.interpolate import CubicSpline, PchipInterpolator
 from splines.quaternion import CatmullRom, UnitQuaternion
 
-# What a squared miss along the curve counts, relative to one across: (10 mm of tremor / 50 mm of smoothing of the
-# alignment)², half-way; fully at the ends. At 1 the curve spends its few knots on *when* a hand hesitated: 13.4 mm RMS on
-# the recorded, 8.1 at worst on generated demonstrations; so, 12.4 and 7.9. At 4e-4 samples slide along it without
-# hold, and it is worse than at 1.
+# What a squared miss along the curve counts half-way, relative to one across: (10 mm of tremor / 50 mm of smoothing of
+# the alignment)²; more towards the ends, there fully. At 1 the curve spends its few knots on *when* a hand hesitated:
+# 13.4 mm RMS on the recorded, 8.1 at worst on generated demonstrations; so, 12.4 and 7.9. At 4e-4 samples slide along
+# it without hold, and it is worse than at 1.
 TIMING_WEIGHT = 0.04
 _FIT_ROUNDS = 3  # the direction of the curve is that of the round before; the fourth moves it by less than 0.1 mm RMS
 
