@@ -32,6 +32,9 @@ class OperatorOptions:
     """A miss smaller than this is left alone."""
     end_tolerance_m: float = 0.015
     """The same for a last push at the end, among the things."""
+    let_go_at: float = 1.0
+    """d at which the person lets go of what may lie anywhere at its goal, on the first try. Below 1 it is a slip of the
+    thumb: the thing hangs out, and is to be pushed in."""
     judge_at: float = 0.78
     """d below which the gripper is clear of the goal, and the person judges what became of the thing."""
     lift_m: float = 0.10

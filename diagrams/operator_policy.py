@@ -220,11 +220,15 @@ class OperatorPolicy:
             aimed = self._aim(state, sight, self.p_BG[thing] - held, end=self.canal.n_disks - 1.0, time=time)
         else:
             aimed = True
-        if aimed and nav.waiting:
+        slip = not goal.precise and not tries[thing] and phase(self.canal, nav.disk) > self.options.let_go_at
+        if slip or (aimed and nav.waiting):
             self._press(state, Button.GRIPPER, time)
             state.mode = Mode.LEAVE
 
     def _leave(self, state: OperatorState, given_up: np.ndarray, tries: np.ndarray, sight: Sight, time: float) -> None:
+        if Leg(int(sight.navigation.leg)) is Leg.HOME_TO_PLACE:  # let go before the end: the robot does not turn there
+            self._press(state, Button.REVERSE, time)
+            return
         if phase(self.canal, sight.navigation.disk) > self.options.judge_at:
             return
         thing = int(state.thing)

@@ -63,12 +63,14 @@ class StickyWorld(LeafSystem):
         discrete.set_value(0, np.concatenate([things.ravel(), [held, closed, slips]]))
 
 
-def load(things, goals, *, slips=0, seconds=240.0, seed=0, X_WB=None):
+def load(things, goals, *, slips=0, seconds=240.0, seed=0, X_WB=None, options=None):
     X_WB = X_WB or RigidTransform()
     canal = learn_canal([arch(-0.12), arch(0.12)])
     builder = DiagramBuilder()
     navigator = CanalNavigator.AddToBuilder(builder=builder, canal=canal)
-    person = SimulatedOperator.AddToBuilder(builder=builder, canal=canal, goals=goals, X_WB=X_WB, seed=seed)
+    person = SimulatedOperator.AddToBuilder(
+        builder=builder, canal=canal, goals=goals, X_WB=X_WB, options=options, seed=seed
+    )
     world = builder.AddSystem(StickyWorld(things, slips))
     builder.Connect(person.GetOutputPort("joystick"), navigator.GetInputPort("joystick"))
     for port in ("X_BT_desired", "gripper_command"):
@@ -127,6 +129,19 @@ def test_pushes_in_what_hangs_out_and_then_gives_up():
     _, state, _ = load(PICK[None], [goal], seconds=400)
     assert state.backtracks >= 4
     assert not state.running, "gives up, and says so by stopping"
+
+
+def test_a_thing_let_go_too_early_is_pushed_in():
+    # Behind the door only at the canal's end; what sticks to the closed gripper stands for what is pushed.
+    goal = DrumGoal(p_WD=PLACE - [0, 0.04, 0], inward=np.array([0, 1.0, 0]), depth=0.3, radius=0.25, clearance=0.02)
+    early = OperatorOptions(let_go_at=0.7)
+    _, sure, _ = load(PICK[None], [goal], seconds=60)
+    _, slipping, _ = load(PICK[None], [goal], seconds=60, options=early)
+    assert sure.backtracks == 0
+    assert slipping.backtracks >= 2, "back off, and in again"
+    marked, state, _ = load(PICK[None], [MarkGoal(PLACE)], options=early)
+    assert np.linalg.norm(marked[0] - PLACE) < 0.03, "what has a mark is not let go before it"
+    assert state.backtracks == 0
 
 
 def test_leaves_out_of_reach_alone():

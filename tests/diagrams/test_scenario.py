@@ -13,6 +13,7 @@ from models import SCENARIOS
 
 NAMED = [
     "laundry",
+    "laundry-askew",
     "laundry-crowded",
     "laundry-hanging",
     "laundry-moved",
