@@ -99,6 +99,20 @@ def test_still_pieces_rest_and_wake_before_they_are_touched():
     assert rig.nodes(0)[:, 2].min() > FLOOR + 0.03
 
 
+def test_a_hand_in_the_corner_of_its_bounds_does_not_wake_a_piece_that_lies_aslant():
+    rig = Rig([("towel", make_shape("towel"), [0.45, 0.0, 0.345], np.pi / 4)], Setting())
+    scene_graph = rig.diagram.GetSubsystemByName("scene_graph")
+    rest = Rest(plant=rig.plant, scene_graph=scene_graph, robot=rig.palm.model_instance(), items=rig.items)
+    rig.wait(1.0)
+    nodes = rig.nodes(0)
+    low, high = nodes.min(axis=0), nodes.max(axis=0)
+    assert not rest.awake(rig.context).any()
+    for x, y, wakes in ((low[0] + 0.04, low[1] + 0.04, True), (high[0] - 0.02, low[1] + 0.02, False)):
+        hand = [x, y, low[2] + 0.03, 0.0, 0.0]  # over an end of it, and where it is not
+        rig.plant.SetPositions(rig.context, rig.palm.model_instance(), [*hand, 0.0])
+        assert rest.awake(rig.context).tolist() == [wakes]
+
+
 @pytest.mark.parametrize(("soft", "bound"), [(True, 0.010), (False, 0.025)])
 def test_half_the_time_step_ends_in_the_same_place(soft, bound):
     assert apart("towel", soft=soft, turns=(0.4,)) < bound
