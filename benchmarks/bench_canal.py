@@ -20,8 +20,9 @@ import numpy as np
 from benchmarks.canal_quality import RECORDED, recorded, shipped
 from benchmarks.table import Row, print_table, write_csv
 from canal.alignment import BAND
+from canal.joystick import JOYSTICK_SIZE
 from canal.learning import N_POINTS, learn_canal
-from canal.navigation import JOYSTICK_SIZE, initial_state, step
+from canal.navigation import initial_state, step
 from canal.surface import CanalSurface
 from canal.trimming import trim
 from canal.warping import warping_path

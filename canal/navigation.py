@@ -15,7 +15,6 @@ from canal.surface import CanalSurface
 
 __all__ = [
     "FIELD_NAMES",
-    "JOYSTICK_SIZE",
     "MIN_RADIUS",
     "Leg",
     "NavigationOptions",
@@ -28,8 +27,6 @@ __all__ = [
     "strategy_ratio",
 ]
 
-JOYSTICK_SIZE = 6
-"""Joystick vector: k_x, k_y in [-1, 1], then the levels (0 or 1) of the buttons gripper, reverse, start, stop."""
 MIN_RADIUS = 1e-9
 """[m] Below this a disk is a point: there is nothing to correct, and the ratio is carried through it."""
 _HELD = ("held_gripper", "held_reverse", "held_start", "held_stop", "held_alarm")
@@ -124,7 +121,7 @@ def step(
     alarm: bool = False,
     options: NavigationOptions | None = None,
 ) -> NavigationState:
-    """One step of `dt` seconds under a joystick vector (see `JOYSTICK_SIZE`); a value that is not finite counts as 0.
+    """One step of `dt` seconds under a joystick vector (see `canal.joystick`); a value that is not finite counts as 0.
 
     While the stick is off centre s stands still and the point moves on its disk by (k_x x_s + k_y y_s)·20/δ·dt,
     saturated at r(s) (paper V-D). Else the point goes along the canal by the leg's ratio strategy. A rising

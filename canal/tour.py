@@ -7,7 +7,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from canal.navigation import JOYSTICK_SIZE, NavigationOptions, initial_state, step
+from canal.joystick import JOYSTICK_SIZE
+from canal.navigation import NavigationOptions, initial_state, step
 from canal.surface import CanalSurface
 
 RATE_HZ = 100.0

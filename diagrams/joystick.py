@@ -7,14 +7,8 @@ import math
 import numpy as np
 from pydrake.systems.framework import BasicVector, Context, DiagramBuilder, DiscreteValues, LeafSystem, OutputPort
 
-from canal.navigation import JOYSTICK_SIZE
+from canal.joystick import JOYSTICK_PERIOD, JOYSTICK_SIZE
 from diagrams.joystick_recording import JoystickRecording
-
-K_X, K_Y, GRIPPER, REVERSE, START, STOP = range(JOYSTICK_SIZE)
-"""Places in the joystick vector: the stick along the disk's correction axes x and y, then the buttons' levels."""
-
-JOYSTICK_PERIOD = 0.05
-"""[s] A joystick is sampled at 20 Hz (paper V-D)."""
 
 
 def clean_joystick(values: np.ndarray) -> np.ndarray:

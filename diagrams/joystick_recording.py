@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 
 from canal.errors import InputError
-from canal.navigation import JOYSTICK_SIZE
+from canal.joystick import JOYSTICK_SIZE
 
 CSV_HEADER = ("t", "k_x", "k_y", "gripper", "reverse", "start", "stop")
 """First line of a CSV file."""
@@ -22,7 +22,7 @@ class JoystickRecording:
 
     Attributes:
         time: seconds, ascending. Shape (T,).
-        joystick: joystick vectors (`canal.navigation.JOYSTICK_SIZE`). Shape (T, 6).
+        joystick: joystick vectors (`canal.joystick`). Shape (T, 6).
         name: where it came from, for messages.
 
     Raises:

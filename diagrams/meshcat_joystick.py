@@ -9,8 +9,8 @@ import numpy as np
 from pydrake.geometry import Meshcat
 from pydrake.systems.framework import Context, DiagramBuilder, DiscreteValues, LeafSystem
 
-from canal.navigation import JOYSTICK_SIZE
-from diagrams.joystick import GRIPPER, JOYSTICK_PERIOD, K_X, K_Y, REVERSE, START, STOP, clean_joystick
+from canal.joystick import GRIPPER, JOYSTICK_PERIOD, JOYSTICK_SIZE, K_X, K_Y, REVERSE, START, STOP
+from diagrams.joystick import clean_joystick
 
 
 @dataclass(frozen=True)

@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 from pydrake.systems.framework import BasicVector, Context, DiagramBuilder, DiscreteValues, LeafSystem
 
+from canal.joystick import JOYSTICK_SIZE
 from canal.navigation import (
     FIELD_NAMES,
-    JOYSTICK_SIZE,
     NavigationOptions,
     NavigationState,
     initial_state,
@@ -30,7 +30,7 @@ class CanalNavigator(LeafSystem):
                      └────────────────┘
     ```
 
-    - `joystick`: see `canal.navigation.JOYSTICK_SIZE`.
+    - `joystick`: see `canal.joystick`.
     - `gripper_state`: angle [rad] and rate [rad/s] of the fingers.
     - `alarm`: optional; rising above 0.5 (a contact force beyond its limit) it stops the motion and opens nothing,
       until the person reverses or starts anew.

@@ -7,11 +7,13 @@ from pydrake.math import RigidTransform
 from pydrake.systems.framework import Context, Diagram, DiagramBuilder, DiscreteValues, LeafSystem
 from pydrake.systems.primitives import DiscreteTimeDelay, Multiplexer
 
-from canal.navigation import FIELD_NAMES, JOYSTICK_SIZE, NavigationOptions, NavigationState
+from canal.joystick import JOYSTICK_PERIOD, JOYSTICK_SIZE
+from canal.navigation import FIELD_NAMES, NavigationOptions, NavigationState
 from canal.surface import CanalSurface
 from diagrams.goals import Goal
-from diagrams.operator_options import PERIOD, OperatorOptions
-from diagrams.operator_policy import EYE, OperatorPolicy, Sight
+from diagrams.operator_options import OperatorOptions
+from diagrams.operator_policy import EYE, OperatorPolicy
+from diagrams.operator_state import Sight
 
 STATE_SIZE = len(FIELD_NAMES)
 
@@ -38,12 +40,12 @@ class OperatorMind(LeafSystem):
         hand = self.DeclareDiscreteState(JOYSTICK_SIZE)
         self._mind, self._hand = mind, hand
         self.DeclareStateOutputPort("joystick", hand)
-        self.DeclarePeriodicDiscreteUpdateEvent(PERIOD, 0.0, self._update)
+        self.DeclarePeriodicDiscreteUpdateEvent(JOYSTICK_PERIOD, 0.0, self._update)
 
     def _update(self, context: Context, discrete: DiscreteValues) -> None:
         time = context.get_time()
         mind = context.get_discrete_state(self._mind).value()
-        if time > self._delay_s + 2.5 * PERIOD:  # before that nothing has been sampled, and reached the eye
+        if time > self._delay_s + 2.5 * JOYSTICK_PERIOD:  # before that nothing has been sampled, and reached the eye
             mind = self._policy.decide(mind, self._look(self._sight.Eval(context), time), time)
         discrete.set_value(self._mind, mind)
         discrete.set_value(self._hand, self._policy.joystick(mind, time))
@@ -52,7 +54,7 @@ class OperatorMind(LeafSystem):
         n = self._n
         poses = sight[: 7 * n].reshape(n, 7).copy()
         bounds = sight[7 * n : 13 * n].reshape(n, 6).copy()
-        rng = np.random.default_rng((self._policy.seed, EYE, round(time / PERIOD)))
+        rng = np.random.default_rng((self._policy.seed, EYE, round(time / JOYSTICK_PERIOD)))
         wrong = rng.normal(0.0, self._noise_m, (n, 3))
         poses[:, :3] += wrong
         bounds += np.hstack([wrong, wrong])
@@ -112,7 +114,7 @@ class SimulatedOperator(Diagram):
         joined = builder.AddNamedSystem("sight", Multiplexer(list(sizes.values())))
         mind = builder.AddNamedSystem("mind", OperatorMind(policy, X_WB, options.delay_s, options.noise_m))
         late = builder.AddNamedSystem(
-            "late", DiscreteTimeDelay(PERIOD, round(options.delay_s / PERIOD), sum(sizes.values()))
+            "late", DiscreteTimeDelay(JOYSTICK_PERIOD, round(options.delay_s / JOYSTICK_PERIOD), sum(sizes.values()))
         )
         for index, name in enumerate(sizes):
             builder.ExportInput(joined.get_input_port(index), name)

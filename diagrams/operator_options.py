@@ -3,9 +3,7 @@
 from dataclasses import dataclass
 
 from canal.errors import InputError
-
-PERIOD = 0.05
-"""[s] A joystick is sampled at 20 Hz (paper V-D)."""
+from canal.joystick import JOYSTICK_PERIOD
 
 
 @dataclass
@@ -49,5 +47,7 @@ class OperatorOptions:
 
     def validate(self) -> None:
         """Check all values (see `NavigationOptions.validate`)."""
-        if not (self.delay_s >= 0 and abs(self.delay_s / PERIOD - round(self.delay_s / PERIOD)) < 1e-9):
-            raise InputError(f"operator.delay_s is {self.delay_s}; give a multiple of {PERIOD} s")
+        if not (
+            self.delay_s >= 0 and abs(self.delay_s / JOYSTICK_PERIOD - round(self.delay_s / JOYSTICK_PERIOD)) < 1e-9
+        ):
+            raise InputError(f"operator.delay_s is {self.delay_s}; give a multiple of {JOYSTICK_PERIOD} s")

@@ -6,87 +6,15 @@ above the thing before the gripper comes down on it, check that a grip held, and
 """
 
 import math
-from dataclasses import dataclass
-from enum import IntEnum
 
 import numpy as np
 
-from canal.navigation import JOYSTICK_SIZE, Leg, NavigationState, phase
+from canal.joystick import GRIPPER, JOYSTICK_PERIOD, JOYSTICK_SIZE, REVERSE, START, STOP
+from canal.navigation import Leg, phase
 from canal.surface import CanalSurface
 from diagrams.goals import Goal
-from diagrams.operator_options import PERIOD, OperatorOptions
-
-
-class Button(IntEnum):
-    """Index of a button in the joystick vector."""
-
-    GRIPPER = 2
-    REVERSE = 3
-    START = 4
-    STOP = 5
-
-
-class Mode(IntEnum):
-    """What the person is about to do."""
-
-    BEGIN = 0
-    PICK = 1
-    LIFT = 2
-    CARRY = 3
-    LEAVE = 4
-    PUSH = 5
-    RETREAT = 6
-    FINISH = 7
-
-
-@dataclass(frozen=True)
-class Sight:
-    """What the person sees at one moment."""
-
-    positions: np.ndarray
-    """Middles of the things in B [m]. Shape (n, 3)."""
-    placed: np.ndarray
-    """Whether each looks placed. Shape (n,)."""
-    p_BT: np.ndarray
-    """The gripper's centre in B [m]. Shape (3,)."""
-    navigation: NavigationState
-    """The disk, the point and the path that are drawn on the screen."""
-
-
-@dataclass
-class OperatorState:
-    """The person's mind and hand; packed into a vector for the Context."""
-
-    mode: float = float(Mode.BEGIN)
-    thing: float = -1.0
-    """Index of the thing that is being handled; -1 for none."""
-    busy_until: float = 0.0
-    """Time [s] until which the person watches and decides nothing."""
-    stick_x: float = 0.0
-    stick_y: float = 0.0
-    stick_until: float = 0.0
-    """The stick is held off centre until then [s]."""
-    button: float = 0.0
-    """Index of the button that is held; 0 for none."""
-    button_until: float = 0.0
-    grip_height: float = 0.0
-    """Height of the gripper at the grip [m]."""
-    aimed: float = 0.0
-    """1 once the aim above the thing was good."""
-
-    SIZE = 10
-
-    @staticmethod
-    def unpack(vector: np.ndarray, n: int) -> tuple["OperatorState", np.ndarray, np.ndarray]:
-        """The state, which things are given up (n,) and the tries (n,) from a vector of SIZE + 2n."""
-        size = OperatorState.SIZE
-        return OperatorState(*vector[:size].tolist()), vector[size : size + n].copy(), vector[size + n :].copy()
-
-    def pack(self, given_up: np.ndarray, tries: np.ndarray) -> np.ndarray:
-        """Inverse of `unpack`."""
-        mind = (self.mode, self.thing, self.busy_until, self.stick_x, self.stick_y, self.stick_until)
-        hand = (self.button, self.button_until, self.grip_height, self.aimed)
-        return np.concatenate([[*mind, *hand], given_up, tries])
+from diagrams.operator_options import OperatorOptions
+from diagrams.operator_state import Mode, OperatorState, Sight
 
 
 class OperatorPolicy:
@@ -131,7 +59,7 @@ class OperatorPolicy:
         if time < state.busy_until - EPSILON:
             return vector
         if sight.navigation.blocked:  # the arm has stopped against something: the way back is free
-            self._press(state, Button.REVERSE, time)
+            self._press(state, REVERSE, time)
             return state.pack(given_up, tries)
         {
             Mode.BEGIN: self._begin,
@@ -148,7 +76,7 @@ class OperatorPolicy:
     # ---- what to do in each mode: each changes the state in place ----
 
     def _begin(self, state: OperatorState, given_up: np.ndarray, tries: np.ndarray, sight: Sight, time: float) -> None:
-        self._press(state, Button.START, time)
+        self._press(state, START, time)
         state.mode = Mode.PICK
 
     def _pick(self, state: OperatorState, given_up: np.ndarray, tries: np.ndarray, sight: Sight, time: float) -> None:
@@ -167,14 +95,14 @@ class OperatorPolicy:
         if leg is Leg.PLACE_TO_HOME:
             return
         if leg is not Leg.HOME_TO_PICK:
-            self._press(state, Button.REVERSE, time)
+            self._press(state, REVERSE, time)
             return
         if nav.gripper_closed:
-            self._press(state, Button.GRIPPER, time)
+            self._press(state, GRIPPER, time)
             return
         thing = int(state.thing)
         if self._aim(state, sight, sight.positions[thing], end=0.0, time=time) and nav.waiting:
-            self._press(state, Button.GRIPPER, time)
+            self._press(state, GRIPPER, time)
             state.grip_height = float(sight.p_BT[2])
             state.mode = Mode.LIFT
 
@@ -222,12 +150,12 @@ class OperatorPolicy:
             aimed = True
         slip = not goal.precise and not tries[thing] and phase(self.canal, nav.disk) > self.options.let_go_at
         if slip or (aimed and nav.waiting):
-            self._press(state, Button.GRIPPER, time)
+            self._press(state, GRIPPER, time)
             state.mode = Mode.LEAVE
 
     def _leave(self, state: OperatorState, given_up: np.ndarray, tries: np.ndarray, sight: Sight, time: float) -> None:
         if Leg(int(sight.navigation.leg)) is Leg.HOME_TO_PLACE:  # let go before the end: the robot does not turn there
-            self._press(state, Button.REVERSE, time)
+            self._press(state, REVERSE, time)
             return
         if phase(self.canal, sight.navigation.disk) > self.options.judge_at:
             return
@@ -250,11 +178,11 @@ class OperatorPolicy:
         """Push in what hangs out: a closed gripper, and back along the same disks (paper VI, task 2)."""
         nav = sight.navigation
         if not nav.gripper_closed:
-            self._press(state, Button.GRIPPER, time)
+            self._press(state, GRIPPER, time)
         elif Leg(int(nav.leg)) in (Leg.PLACE_TO_HOME, Leg.HOME_TO_PICK):
-            self._press(state, Button.REVERSE, time)
+            self._press(state, REVERSE, time)
         elif self._aim(state, sight, sight.positions[int(state.thing)], self.canal.n_disks - 1.0, time) and nav.waiting:
-            self._press(state, Button.REVERSE, time)
+            self._press(state, REVERSE, time)
             state.mode = Mode.RETREAT
 
     def _retreat(
@@ -263,13 +191,13 @@ class OperatorPolicy:
         if phase(self.canal, sight.navigation.disk) > self.options.judge_at:
             return
         if sight.navigation.gripper_closed:
-            self._press(state, Button.GRIPPER, time)
+            self._press(state, GRIPPER, time)
         state.mode = Mode.LEAVE
 
     def _finish(self, state: OperatorState, given_up: np.ndarray, tries: np.ndarray, sight: Sight, time: float) -> None:
         nav = sight.navigation
         if nav.running and Leg(int(nav.leg)) in (Leg.HOME_TO_PICK, Leg.HOME_TO_PLACE):
-            self._press(state, Button.STOP, time)
+            self._press(state, STOP, time)
 
     # ---- the hand ----
 
@@ -277,7 +205,7 @@ class OperatorPolicy:
         tries[int(state.thing)] += 1
         state.thing, state.mode, state.aimed = -1.0, Mode.PICK, 0.0
 
-    def _press(self, state: OperatorState, button: Button, time: float) -> None:
+    def _press(self, state: OperatorState, button: int, time: float) -> None:
         state.button, state.button_until = float(button), time + self.options.press_s
         state.busy_until = time + self.options.think_s + self.options.delay_s
 
@@ -308,13 +236,15 @@ class OperatorPolicy:
         length = math.hypot(right, up)
         if length < 1e-4:
             return
-        samples = math.ceil(length / (self.stick_speed * PERIOD))
-        k = length / (self.stick_speed * PERIOD * samples)
-        error = np.random.default_rng((self.seed, HAND, round(time / PERIOD))).normal(0, self.options.hand_noise, 2)
+        samples = math.ceil(length / (self.stick_speed * JOYSTICK_PERIOD))
+        k = length / (self.stick_speed * JOYSTICK_PERIOD * samples)
+        error = np.random.default_rng((self.seed, HAND, round(time / JOYSTICK_PERIOD))).normal(
+            0, self.options.hand_noise, 2
+        )
         k = min(max(k * (1 + error[0]), 0.15), 1.0)
         angle = math.atan2(up, right) + error[1]
         state.stick_x, state.stick_y = k * math.cos(angle), k * math.sin(angle)
-        state.stick_until = time + samples * PERIOD
+        state.stick_until = time + samples * JOYSTICK_PERIOD
         state.busy_until = state.stick_until + self.options.delay_s + self.options.look_s
 
 

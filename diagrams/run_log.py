@@ -8,9 +8,9 @@ import numpy as np
 from pydrake.systems.framework import Context, DiagramBuilder, OutputPort
 from pydrake.systems.primitives import LogVectorOutput, VectorLogSink
 
+from canal.joystick import GRIPPER
 from canal.navigation import FIELD_NAMES, Leg
 from diagrams.ik_system import IkStatusField
-from diagrams.joystick import GRIPPER
 
 
 class RunLog:

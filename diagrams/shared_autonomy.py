@@ -10,6 +10,7 @@ from pydrake.geometry import Meshcat, MeshcatVisualizer, MeshcatVisualizerParams
 from pydrake.systems.framework import Context, Diagram, DiagramBuilder, OutputPort
 from pydrake.systems.primitives import ZeroOrderHold
 
+from canal.joystick import JOYSTICK_PERIOD
 from canal.surface import CanalSurface
 from diagrams.cameras import VideoRecorder
 from diagrams.canal_view import CanalView
@@ -22,7 +23,6 @@ from diagrams.meshcat_joystick import MeshcatJoystick
 from diagrams.monitor import Monitor
 from diagrams.navigator import CanalNavigator
 from diagrams.operator import SimulatedOperator
-from diagrams.operator_options import PERIOD
 from diagrams.reach import reach_report
 from diagrams.run_log import RunLog
 from diagrams.scenario import Scenario
@@ -102,7 +102,7 @@ def build_shared_autonomy(
     # Each measurement is taken once a tick, before the plant's step: whoever needs it reads the same sample.
     measured: dict[str, OutputPort] = {}
     holds: list[ZeroOrderHold] = []
-    for name, every in (dict.fromkeys(MEASURED, period) | dict.fromkeys(THINGS, PERIOD)).items():
+    for name, every in (dict.fromkeys(MEASURED, period) | dict.fromkeys(THINGS, JOYSTICK_PERIOD)).items():
         port = station.GetOutputPort(name)
         hold = builder.AddNamedSystem(f"measured_{name}", ZeroOrderHold(every, port.size()))
         builder.Connect(port, hold.get_input_port())

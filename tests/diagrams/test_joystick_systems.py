@@ -7,7 +7,8 @@ from pydrake.systems.analysis import Simulator
 from pydrake.systems.framework import DiagramBuilder
 from pydrake.systems.primitives import ConstantVectorSource, LogVectorOutput
 
-from diagrams.joystick import JOYSTICK_PERIOD, JoystickSelector, RecordedJoystick, clean_joystick
+from canal.joystick import JOYSTICK_PERIOD
+from diagrams.joystick import JoystickSelector, RecordedJoystick, clean_joystick
 from diagrams.joystick_recording import JoystickRecording
 
 ANYTHING = st.lists(st.floats(allow_nan=True, allow_infinity=True), min_size=6, max_size=6)

@@ -8,7 +8,7 @@ from pydrake.systems.analysis import Simulator
 from pydrake.systems.framework import DiagramBuilder
 from waiting import wait_until
 
-from diagrams.joystick import GRIPPER, K_X, K_Y, REVERSE, START, STOP
+from canal.joystick import GRIPPER, K_X, K_Y, REVERSE, START, STOP
 from diagrams.meshcat_joystick import CENTRE, CONTROLS, KEYS, SLIDERS, MeshcatJoystick, read_gamepad
 
 NUMBERS = st.floats(allow_nan=True, allow_infinity=True)

@@ -1,0 +1,71 @@
+"""What the simulated person sees and has in mind."""
+
+from dataclasses import dataclass
+from enum import IntEnum
+
+import numpy as np
+
+from canal.navigation import NavigationState
+
+
+class Mode(IntEnum):
+    """What the person is about to do."""
+
+    BEGIN = 0
+    PICK = 1
+    LIFT = 2
+    CARRY = 3
+    LEAVE = 4
+    PUSH = 5
+    RETREAT = 6
+    FINISH = 7
+
+
+@dataclass(frozen=True)
+class Sight:
+    """What the person sees at one moment."""
+
+    positions: np.ndarray
+    """Middles of the things in B [m]. Shape (n, 3)."""
+    placed: np.ndarray
+    """Whether each looks placed. Shape (n,)."""
+    p_BT: np.ndarray
+    """The gripper's centre in B [m]. Shape (3,)."""
+    navigation: NavigationState
+    """The disk, the point and the path that are drawn on the screen."""
+
+
+@dataclass
+class OperatorState:
+    """The person's mind and hand; packed into a vector for the Context."""
+
+    mode: float = float(Mode.BEGIN)
+    thing: float = -1.0
+    """Index of the thing that is being handled; -1 for none."""
+    busy_until: float = 0.0
+    """Time [s] until which the person watches and decides nothing."""
+    stick_x: float = 0.0
+    stick_y: float = 0.0
+    stick_until: float = 0.0
+    """The stick is held off centre until then [s]."""
+    button: float = 0.0
+    """Index of the button that is held; 0 for none."""
+    button_until: float = 0.0
+    grip_height: float = 0.0
+    """Height of the gripper at the grip [m]."""
+    aimed: float = 0.0
+    """1 once the aim above the thing was good."""
+
+    SIZE = 10
+
+    @staticmethod
+    def unpack(vector: np.ndarray, n: int) -> tuple["OperatorState", np.ndarray, np.ndarray]:
+        """The state, which things are given up (n,) and the tries (n,) from a vector of SIZE + 2n."""
+        size = OperatorState.SIZE
+        return OperatorState(*vector[:size].tolist()), vector[size : size + n].copy(), vector[size + n :].copy()
+
+    def pack(self, given_up: np.ndarray, tries: np.ndarray) -> np.ndarray:
+        """Inverse of `unpack`."""
+        mind = (self.mode, self.thing, self.busy_until, self.stick_x, self.stick_y, self.stick_until)
+        hand = (self.button, self.button_until, self.grip_height, self.aimed)
+        return np.concatenate([[*mind, *hand], given_up, tries])
