@@ -114,10 +114,10 @@ def washing_machine(name: str, opening: float) -> None:
     write_model(HERE / f"{name}.sdf", name, [link], SCRIPT)
 
 
-def basket(name: str = "basket") -> None:
-    """A laundry basket; origin at the middle of its underside."""
+def basket(name: str, x: float) -> None:
+    """A laundry basket, `x` [m] wide along x; origin at the middle of its underside."""
     link = Link("basket")
-    x, y, z, wall = 0.36, 0.50, 0.10, 0.012
+    y, z, wall = 0.50, 0.10, 0.012
     link.collision(box((x, y, 0.01)), WICKER, (0, 0, 0.005))
     for sign in (-1, 1):
         link.collision(box((0.02, y, z)), WICKER, (sign * (x - wall) / 2, 0, z / 2))
@@ -170,7 +170,8 @@ def main() -> None:
     washing_machine("washing_machine", opening=0.17)
     washing_machine("washing_machine_narrow", opening=0.15)
     floor()
-    basket()
+    basket("basket", x=0.36)
+    basket("basket_wide", x=0.44)
     table("laundry_table", width=0.46, depth=0.70, height=0.30)
     table("table", width=0.56, depth=0.66, height=0.40)
 
