@@ -108,7 +108,7 @@ def alignment(demonstrations: list) -> list[Row]:
     a, b = (trim(d, N_POINTS).position for d in demonstrations[:2])
     window = round(BAND * N_POINTS)
     contenders: dict[str, Callable[[], np.ndarray]] = {
-        "geosacs": lambda: warping_path(a, b, BAND),
+        "geosacs (tslearn, uncompiled)": lambda: warping_path(a, b, BAND),
     }
     try:
         from dtaidistance import dtw_ndim
