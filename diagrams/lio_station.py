@@ -48,8 +48,12 @@ class LioStation(Diagram):
     the pairs. Gravity does not act on the arm's model: ideal compensation, as the real drives have it.
     """
 
-    def __init__(self, scenario: Scenario, *, seed: int = 0, q0: np.ndarray = START_POSTURE) -> None:
+    def __init__(
+        self, scenario: Scenario, *, seed: int = 0, q0: np.ndarray = START_POSTURE, filmed: bool = False
+    ) -> None:
         """Build the scene of a scenario, its items drawn from `seed`, the arm in posture `q0` (6,) [rad].
+
+        `filmed`: whether cameras will look at it.
 
         Raises:
             InputError: a model does not exist, items do not fit, things overlap, or `q0` is beyond a limit.
@@ -67,7 +71,7 @@ class LioStation(Diagram):
         plant, scene_graph = AddMultibodyPlant(config, builder)
         self.plant: MultibodyPlant = plant
         self.scene_graph: SceneGraph = scene_graph
-        self.scene: Scene = add_scene(plant=plant, scene_graph=scene_graph, scenario=scenario, seed=seed)
+        self.scene: Scene = add_scene(plant=plant, scene_graph=scene_graph, scenario=scenario, seed=seed, filmed=filmed)
         self.goals: list[Goal] = make_goals(scenario, self.scene.marks, self.scene.rest_heights)
         lio = self.scene.lio
         set_drives(plant, lio)
@@ -114,10 +118,15 @@ class LioStation(Diagram):
 
     @staticmethod
     def AddToBuilder(
-        *, builder: DiagramBuilder, scenario: Scenario, seed: int = 0, q0: np.ndarray = START_POSTURE
+        *,
+        builder: DiagramBuilder,
+        scenario: Scenario,
+        seed: int = 0,
+        q0: np.ndarray = START_POSTURE,
+        filmed: bool = False,
     ) -> LioStation:
         """Build a station and add it; its inputs are left to connect."""
-        return builder.AddNamedSystem("lio_station", LioStation(scenario, seed=seed, q0=q0))
+        return builder.AddNamedSystem("lio_station", LioStation(scenario, seed=seed, q0=q0, filmed=filmed))
 
     def plant_context(self, context: Context) -> Context:
         """The plant's part of the context of any diagram that this station is in."""

@@ -76,8 +76,12 @@ def add_lio(plant: MultibodyPlant, robot: Robot) -> tuple[ModelInstanceIndex, Ri
     return lio, X_WB
 
 
-def add_scene(*, plant: MultibodyPlant, scene_graph: SceneGraph, scenario: Scenario, seed: int) -> Scene:
+def add_scene(
+    *, plant: MultibodyPlant, scene_graph: SceneGraph, scenario: Scenario, seed: int, filmed: bool = False
+) -> Scene:
     """Add all that a scenario names to a plant that is registered with a scene graph and not yet finalized.
+
+    `filmed`: whether cameras will look at it.
 
     Raises:
         InputError: a model does not exist, or the items do not fit where they may lie.
@@ -88,7 +92,7 @@ def add_scene(*, plant: MultibodyPlant, scene_graph: SceneGraph, scenario: Scena
         scene.things.setdefault(thing.name, []).append(_add_thing(plant, scenario, thing, k))
     starts, scene.marks = draw_layout(scenario, seed)
     for item, start in zip(scenario.items, starts, strict=True):
-        height, handle = _add_item(plant, scene_graph, scenario, item, start)
+        height, handle = _add_item(plant, scene_graph, scenario, item, start, filmed)
         scene.rest_heights.append(height)
         scene.items.append(handle)
     for item, mark in zip(scenario.items, scene.marks, strict=True):
@@ -114,7 +118,7 @@ def _add_thing(plant: MultibodyPlant, scenario: Scenario, thing: Thing, k: int) 
 
 
 def _add_item(
-    plant: MultibodyPlant, scene_graph: SceneGraph, scenario: Scenario, item: Item, start: Spot
+    plant: MultibodyPlant, scene_graph: SceneGraph, scenario: Scenario, item: Item, start: Spot, filmed: bool
 ) -> tuple[float, RigidItem | SoftItem]:
     """Add one item where it starts; returns also the height of its origin above what it stands on."""
     X = yaw_pose(start.position, start.yaw)
@@ -122,7 +126,7 @@ def _add_item(
         shape = make_shape(item.model)
         height = -float(shape.mesh.vertices[:, 2].min())
         X.set_translation(start.position + [0, 0, height + DROP])
-        return height, add_soft_item(plant=plant, name=item.name, shape=shape, X_WP=X)
+        return height, add_soft_item(plant=plant, name=item.name, shape=shape, X_WP=X, filmed=filmed)
     path = scenario.resolve(item.model, MODELS / "items", ".sdf")
     (model,) = Parser(plant, f"item_{item.name}").AddModels(str(path))
     (index,) = plant.GetBodyIndices(model)

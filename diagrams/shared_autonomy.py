@@ -86,7 +86,9 @@ def build_shared_autonomy(
 
     solver = make_lio_solver(scenario)
     start = find_start_posture(solver, canal, preferred=START_POSTURE)
-    station = LioStation.AddToBuilder(builder=builder, scenario=scenario, seed=seed, q0=start.q)
+    station = LioStation.AddToBuilder(
+        builder=builder, scenario=scenario, seed=seed, q0=start.q, filmed=video is not None
+    )
     navigator = CanalNavigator.AddToBuilder(builder=builder, canal=canal, options=scenario.navigation, period=period)
     ik = builder.AddNamedSystem("ik", OrientationWeightedIk(solver, q_start=start.q, period=period))
     monitor = Monitor.AddToBuilder(

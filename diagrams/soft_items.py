@@ -8,6 +8,8 @@ nothing sags; less damping makes a step dearer, more changes little.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from pathlib import Path
+from tempfile import TemporaryDirectory
 
 import numpy as np
 from pydrake.common import MemoryFile
@@ -28,6 +30,7 @@ from pydrake.multibody.plant import CoulombFriction, MultibodyPlant
 from pydrake.multibody.tree import DeformableBodyId
 from pydrake.systems.framework import Context
 
+from diagrams.soft_render import write_render_mesh
 from diagrams.soft_shapes import SoftShape
 
 
@@ -73,11 +76,18 @@ class SoftItem:
 
 
 def add_soft_item(
-    *, plant: MultibodyPlant, name: str, shape: SoftShape, X_WP: RigidTransform, material: SoftMaterial | None = None
+    *,
+    plant: MultibodyPlant,
+    name: str,
+    shape: SoftShape,
+    X_WP: RigidTransform,
+    material: SoftMaterial | None = None,
+    filmed: bool = False,
 ) -> SoftItem:
     """Register a piece with a plant that is not yet finalized; P is the frame of the shape at rest.
 
-    Drake's own Meshcat drawing of the coarse mesh is hidden; `soft_view` draws the fine surface.
+    Drake's own Meshcat drawing of the coarse mesh is hidden; `soft_view` draws the fine surface. Cameras see
+    it too where a piece is `filmed` (that takes a second to prepare), else the solid in its mean colour.
     """
     material = material or SoftMaterial()
     config = DeformableBodyConfig()
@@ -95,11 +105,17 @@ def add_soft_item(
     hidden = IllustrationProperties()
     hidden.AddProperty("meshcat", "accepting", "nobody")  # a visualizer draws what names its prefix, or no prefix
     geometry.set_illustration_properties(hidden)
-    seen = PerceptionProperties()  # cameras see the coarse solid, in the mean colour of the surface
-    seen.AddProperty("phong", "diffuse", Rgba(*shape.surface.colors.mean(axis=0), 1.0))
-    geometry.set_perception_properties(seen)
-    model = plant.mutable_deformable_model()
-    body_id = model.RegisterDeformableBody(geometry, config, 1.0)  # the hint is ignored for a mesh
+    with TemporaryDirectory() as folder:  # read once, when the body is registered
+        seen = PerceptionProperties()
+        if filmed:
+            surface = Path(folder) / f"{shape.kind}.obj"
+            write_render_mesh(shape, surface)
+            seen.AddProperty("deformable", "embedded_mesh", str(surface))
+        else:
+            seen.AddProperty("phong", "diffuse", Rgba(*shape.surface.colors.mean(axis=0), 1.0))
+        geometry.set_perception_properties(seen)
+        model = plant.mutable_deformable_model()
+        body_id = model.RegisterDeformableBody(geometry, config, 1.0)  # the hint is ignored for a mesh
     return SoftItem(name, shape, body_id, model.GetGeometryId(body_id))
 
 
