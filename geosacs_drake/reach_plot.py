@@ -89,6 +89,6 @@ def _draw_canal(axes, canal: CanalSurface, report: ReachReport) -> None:
         axes.legend(loc="upper left")
     axes.plot(*canal.directrix.T, ":", color="0.1", linewidth=1.4)
     for disk, name in ((0, "pick"), (canal.home_disk, "home"), (canal.n_disks - 1, "place")):
-        axes.text(*canal.directrix[disk], name)
+        axes.text(*canal.directrix[disk], f" {name}", va="bottom" if name == "home" else "top")
     axes.set(xlabel="x [m]", ylabel="y [m]", zlabel="z [m]")
     axes.set_aspect("equal")

@@ -172,9 +172,10 @@ def towel() -> None:
 
 def sock() -> None:
     """A pair of socks, bundled: striped."""
+    # On the narrower facets of ten sides some went on rolling through the basket.
     body = bundle(SOCK, 2.2, 0.04)
     stripes = [(k, k + 1) for k in (4, 7, 10, 13, 16, 19)]
-    item("sock", 0.06, ellipsoid_inertia(0.06, *SOCK), hull("sock", blunt(SOCK, 2.2, 8, 10)), COTTON,
+    item("sock", 0.06, ellipsoid_inertia(0.06, *SOCK), hull("sock", blunt(SOCK, 2.2, 8, 8)), COTTON,
          [(grid(body, close_columns=True).outward(), NAVY), (bands(body, stripes), CREAM)])  # fmt: skip
 
 
