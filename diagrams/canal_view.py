@@ -84,7 +84,7 @@ class CanalView(LeafSystem):
         self._canal = canal
         self._options = options or NavigationOptions()
         self._X_WB = X_WB or RigidTransform()
-        self._disk_colors = disk_colors
+        self._disk_colors = None if disk_colors is None else np.asarray(disk_colors, dtype=float)
         self._path = path
         self._beads = np.interp(
             np.arange(BEAD_SPACING / 2, canal.length, BEAD_SPACING), canal.arc, np.arange(canal.n_disks)
@@ -138,21 +138,28 @@ class CanalView(LeafSystem):
         # Else a translucent face hides the translucent ones behind it.
         self._meshcat.SetProperty(f"{path}/<object>", "material.depthWrite", False)
 
+    def _colored_mesh(self, name: str, mesh: TriangleMesh, colors: np.ndarray) -> None:
+        """Draw a mesh that has as many vertices for each disk, in the colours of the disks (n, 3)."""
+        each = np.repeat(colors, mesh.vertices.shape[1] // len(colors), axis=0)
+        self._meshcat.SetTriangleColorMesh(f"{self._path}/{name}", mesh.vertices, mesh.faces, each.T)
+        self._meshcat.SetProperty(f"{self._path}/{name}/<object>", "castShadow", False)
+
     def _publish_canal(self, context: Context, discrete: DiscreteValues) -> EventStatus:
         canal, meshcat, path = self._canal, self._meshcat, self._path
         meshcat.Delete(path)
         meshcat.SetTransform(path, self._X_WB)
         disks = np.unique(np.linspace(0, canal.n_disks - 1, min(canal.n_disks, MOST_RINGS)).astype(int))
         skin = meshes.canal_skin(canal, disks)
+        rings = meshes.canal_rings(canal, disks[::RING_EVERY], 0.0008)
         if self._disk_colors is None:
             self._mesh("surface", skin, SURFACE, closed=False)
+            self._mesh("rings", rings, RINGS)
         else:
-            colors = np.repeat(np.asarray(self._disk_colors, dtype=float)[disks], len(skin.vertices.T) // len(disks), 0)
-            meshcat.SetTriangleColorMesh(f"{path}/surface", skin.vertices, skin.faces, colors.T)
+            self._colored_mesh("surface", skin, self._disk_colors[disks])
             meshcat.SetProperty(f"{path}/surface/<object>", "opacity", COLORED_OPACITY)
-            meshcat.SetProperty(f"{path}/surface/<object>", "castShadow", False)
             self._see_through(f"{path}/surface")
-        self._mesh("rings", meshes.canal_rings(canal, disks[::RING_EVERY], 0.0008), RINGS)
+            # The skin is too clear for its colour to be seen at a glance.
+            self._colored_mesh("rings", rings, self._disk_colors[disks[::RING_EVERY]])
         self._mesh("directrix", meshes.dashes(canal.directrix, 0.0025, 0.014, 0.010), DIRECTRIX)
         lines = [meshes.tube(demonstration[disks], 0.001, 4) for demonstration in canal.demonstrations]
         self._mesh("demonstrations", meshes.merge(lines), DEMONSTRATIONS)

@@ -18,8 +18,10 @@ from diagrams.start_posture import (
 
 _TICK = 0.25  # [s], long enough that speed bounds nothing between neighbouring points
 _ROUNDS = 4
-# Of a colour scale that a colour-blind person can read: out of reach, half, all (ColorBrewer's red-yellow-blue).
-_COLORS = np.array([[0.84, 0.19, 0.15], [0.99, 0.88, 0.56], [0.27, 0.46, 0.71]])
+# A colour scale that a colour-blind person can read: out of reach red, half orange, most yellow, and only all of it
+# blue (after ColorBrewer's red-yellow-blue, stronger, since the canal is translucent).
+_SHARES = (0.0, 0.5, 0.9, 1.0)
+_COLORS = np.array([[0.84, 0.15, 0.12], [0.96, 0.45, 0.10], [0.98, 0.76, 0.15], [0.27, 0.46, 0.71]])
 
 
 @dataclass(frozen=True, eq=False)
@@ -52,7 +54,7 @@ class ReachReport:
 
     def colors(self) -> np.ndarray:
         """Red, green and blue in [0, 1] for each disk, from red (out of reach) to blue (all of it), shape (N, 3)."""
-        return np.column_stack([np.interp(self.share, (0.0, 0.5, 1.0), column) for column in _COLORS.T])
+        return np.column_stack([np.interp(self.share, _SHARES, column) for column in _COLORS.T])
 
     def describe(self) -> list[str]:
         """Lines for a person: how much is reached, and from where to where it is not."""
