@@ -9,10 +9,12 @@ from __future__ import annotations
 import numpy as np
 from pydrake.math import RigidTransform, RollPitchYaw
 from pydrake.multibody.parsing import Parser
-from pydrake.multibody.plant import AddMultibodyPlant, MultibodyPlantConfig
+from pydrake.multibody.plant import AddMultibodyPlant
 from pydrake.systems.analysis import Simulator
 from pydrake.systems.framework import DiagramBuilder
 
+from diagrams.lio_station import plant_config
+from diagrams.scenario import Contact
 from diagrams.soft_contact import prepare_for_cloth
 from diagrams.soft_items import add_soft_item, soft_positions
 from diagrams.soft_shapes import make_shape
@@ -27,13 +29,7 @@ RELEASE = np.array([0.0, 0.95, 0.44])
 def end_of_fall(kind: str, *, soft: bool, time_step: float, turn: float) -> np.ndarray:
     """Middle of a piece [m] after it fell, let go with a turn about the vertical [rad]. Shape (3,)."""
     builder = DiagramBuilder()
-    config = MultibodyPlantConfig(
-        time_step=time_step,
-        discrete_contact_approximation="lagged",
-        contact_model="hydroelastic_with_fallback",
-        stiction_tolerance=1e-4,
-    )
-    plant, scene_graph = AddMultibodyPlant(config, builder)
+    plant, scene_graph = AddMultibodyPlant(plant_config(Contact(time_step=time_step)), builder)
     (machine,) = Parser(plant).AddModels(str(MODELS / "world" / "washing_machine.sdf"))
     base = plant.get_body(plant.GetBodyIndices(machine)[0]).body_frame()
     plant.WeldFrames(plant.world_frame(), base, RigidTransform([0.0, 0.79, 0.0]))

@@ -20,6 +20,13 @@ _SAMPLE_RATE = 20.0
 _RANDOM_STARTS = 30
 
 
+def pose_of(solver: IkSolver, q: np.ndarray) -> np.ndarray:
+    """Position [m] and quaternion (w, x, y, z) of the tool at posture q (n,). Shape (7,)."""
+    solver.kinematics.set(q)
+    pose = solver.kinematics.pose()
+    return np.concatenate((pose[:, 3], Rotation.from_matrix(pose[:, :3]).as_quat(scalar_first=True)))
+
+
 @dataclass(frozen=True)
 class Case:
     """A path of wanted poses (T, 7) at 100 Hz, the weight of orientation, and where the arm starts, shape (n,)."""

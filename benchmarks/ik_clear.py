@@ -11,9 +11,8 @@ from pydrake.multibody.parsing import Parser
 from pydrake.multibody.plant import AddMultibodyPlantSceneGraph, CoulombFriction, MultibodyPlant
 from pydrake.multibody.tree import SpatialInertia
 from pydrake.systems.framework import Diagram, DiagramBuilder
-from scipy.spatial.transform import Rotation
 
-from benchmarks.ik_cases import DT
+from benchmarks.ik_cases import DT, pose_of
 from benchmarks.table import Row
 from diagrams.ik_options import IkOptions, KeepClearOptions
 from diagrams.ik_solver import IkSolver
@@ -55,10 +54,7 @@ def solver_beside_wall(**options: object) -> IkSolver:
 
 def deep_path(reach: float = DEEP) -> list[np.ndarray]:
     """Targets that sweep past the wall, from 0.48 m in x to `reach` and back, with the gripper forwards."""
-    arm = IkSolver(make_arm_plant(), TCP_FRAME).kinematics
-    arm.set(Q_FRONT)
-    pose = arm.pose()
-    start = np.concatenate((pose[:, 3], Rotation.from_matrix(pose[:, :3]).as_quat(scalar_first=True)))
+    start = pose_of(IkSolver(make_arm_plant(), TCP_FRAME), Q_FRONT)
     path = []
     for share in 0.5 - 0.5 * np.cos(np.linspace(0.0, 2.0 * np.pi, 400)):
         X = start.copy()

@@ -3,6 +3,7 @@
 import numpy as np
 from scipy.spatial.transform import Rotation
 
+from benchmarks.ik_cases import pose_of
 from benchmarks.table import Row
 from diagrams.ik_options import IkStatus
 from diagrams.ik_solver import IkSolver
@@ -60,9 +61,7 @@ def fuzz(solver: IkSolver, ticks: int, seed: int = 0) -> list[Row]:
 
 def _pose(solver: IkSolver, rng: np.random.Generator) -> np.ndarray:
     """A pose that the arm can take, or one of many that it cannot."""
-    solver.kinematics.set(rng.uniform(solver.q_min, solver.q_max))
-    pose = solver.kinematics.pose()
-    X = np.concatenate((pose[:, 3], Rotation.from_matrix(pose[:, :3]).as_quat(scalar_first=True)))
+    X = pose_of(solver, rng.uniform(solver.q_min, solver.q_max))
     kind = rng.integers(12)
     if kind == 0:
         X[:3] = rng.normal(scale=2.0, size=3)

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from pydrake.geometry import AddContactMaterial, Box, ProximityProperties
 from pydrake.math import RigidTransform, RollPitchYaw, RotationMatrix
-from pydrake.multibody.plant import AddMultibodyPlant, CoulombFriction, MultibodyPlant, MultibodyPlantConfig
+from pydrake.multibody.plant import AddMultibodyPlant, CoulombFriction, MultibodyPlant
 from pydrake.multibody.tree import (
     FixedOffsetFrame,
     PdControllerGains,
@@ -21,6 +21,8 @@ from pydrake.multibody.tree import (
 from pydrake.systems.analysis import Simulator
 from pydrake.systems.framework import DiagramBuilder
 
+from diagrams.lio_station import plant_config
+from diagrams.scenario import Contact
 from diagrams.soft_contact import MARGIN, prepare_for_cloth
 from diagrams.soft_items import SoftMaterial, add_soft_item, node_masses, soft_positions, soft_velocities
 from diagrams.soft_shapes import SoftShape
@@ -99,13 +101,8 @@ class Rig:
     def __init__(self, pieces: list[tuple[str, SoftShape, list[float], float]], setting: Setting) -> None:
         """Put (name, shape, position [m], yaw [rad]) into the scene."""
         builder = DiagramBuilder()
-        config = MultibodyPlantConfig(
-            time_step=setting.time_step,
-            discrete_contact_approximation=setting.approximation,
-            contact_model="hydroelastic_with_fallback",
-            stiction_tolerance=setting.stiction_tolerance,
-        )
-        self.plant, scene_graph = AddMultibodyPlant(config, builder)
+        contact = Contact(setting.time_step, setting.approximation, stiction_tolerance=setting.stiction_tolerance)
+        self.plant, scene_graph = AddMultibodyPlant(plant_config(contact), builder)
         add_floor_and_drum(self.plant)
         self.palm = add_hand(self.plant)
         hand = self.palm.model_instance()

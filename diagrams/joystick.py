@@ -113,9 +113,8 @@ class JoystickSelector(LeafSystem):
 
     def _in_charge(self, context: Context) -> bool:
         # The touch counts in the very sample that shows it; the state only remembers it.
-        if context.get_discrete_state(self._latch).value().item(0) > 0.5:
-            return True
-        return self._person.HasValue(context) and is_touched(self._person_joystick(context))
+        latched = context.get_discrete_state(self._latch).value().item(0) > 0.5
+        return latched or is_touched(self._person_joystick(context))
 
     def _update(self, context: Context, discrete: DiscreteValues) -> None:
         discrete.set_value(0, np.array((float(self._in_charge(context)),)))

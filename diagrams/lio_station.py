@@ -16,7 +16,7 @@ from diagrams.item_sensor import ItemSensor
 from diagrams.layout import make_goals
 from diagrams.lio_drive import ARM, OPEN_ANGLE, LioDrive
 from diagrams.lio_sensors import JOINTS, LioSensor
-from diagrams.scenario import Scenario
+from diagrams.scenario import Contact, Scenario
 from diagrams.scene import Scene, add_scene, check_overlaps
 from diagrams.soft_contact import prepare_for_cloth
 
@@ -60,15 +60,7 @@ class LioStation(Diagram):
         """
         super().__init__()
         builder = DiagramBuilder()
-        contact = scenario.contact
-        config = MultibodyPlantConfig(
-            time_step=contact.time_step,
-            discrete_contact_approximation=contact.approximation,
-            contact_model=contact.model,
-            contact_surface_representation="polygon",
-            stiction_tolerance=contact.stiction_tolerance,
-        )
-        plant, scene_graph = AddMultibodyPlant(config, builder)
+        plant, scene_graph = AddMultibodyPlant(plant_config(scenario.contact), builder)
         self.plant: MultibodyPlant = plant
         self.scene_graph: SceneGraph = scene_graph
         self.scene: Scene = add_scene(plant=plant, scene_graph=scene_graph, scenario=scenario, seed=seed, filmed=filmed)
@@ -131,6 +123,17 @@ class LioStation(Diagram):
     def plant_context(self, context: Context) -> Context:
         """The plant's part of the context of any diagram that this station is in."""
         return self.plant.GetMyContextFromRoot(context)
+
+
+def plant_config(contact: Contact) -> MultibodyPlantConfig:
+    """How Drake is to compute contact."""
+    return MultibodyPlantConfig(
+        time_step=contact.time_step,
+        discrete_contact_approximation=contact.approximation,
+        contact_model=contact.model,
+        contact_surface_representation="polygon",
+        stiction_tolerance=contact.stiction_tolerance,
+    )
 
 
 def set_drives(plant: MultibodyPlant, lio: ModelInstanceIndex) -> None:

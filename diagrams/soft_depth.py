@@ -36,18 +36,13 @@ class FixedBoxes:
         spread = np.array(corners).reshape(-1, 8, 3)
         self._low, self._high = spread.min(axis=1), spread.max(axis=1)
 
-    def depths(self, points: np.ndarray) -> np.ndarray:
-        """Depth of each of `points` (n, 3) in W below the nearest face of each box [m], shape (boxes, n); < 0: out."""
-        return self._depths(points, np.ones(len(self._planes), dtype=bool))
-
     def depth(self, points: np.ndarray) -> float:
         """Greatest depth of `points` (n, 3) below the nearest face of a box that they lie in [m], in W; 0 outside."""
         near = np.all((self._low < points.max(axis=0)) & (self._high > points.min(axis=0)), axis=1)
-        return max(0.0, float(self._depths(points, near).max())) if near.any() else 0.0
-
-    def _depths(self, points: np.ndarray, which: np.ndarray) -> np.ndarray:
-        planes = self._planes[which]
-        return (planes[:, :, None, 3] - planes[:, :, :3] @ points.T).min(axis=1)
+        if not near.any():
+            return 0.0
+        planes = self._planes[near]
+        return max(0.0, float((planes[:, :, None, 3] - planes[:, :, :3] @ points.T).min(axis=1).max()))
 
 
 def _planes_and_corners(shape: Shape, X_WG: RigidTransform) -> tuple[np.ndarray, np.ndarray] | None:

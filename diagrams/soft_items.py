@@ -7,6 +7,7 @@ nothing sags; less damping makes a step dearer, more changes little.
 
 from __future__ import annotations
 
+from contextlib import ExitStack
 from dataclasses import dataclass
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -105,9 +106,10 @@ def add_soft_item(
     hidden = IllustrationProperties()
     hidden.AddProperty("meshcat", "accepting", "nobody")  # a visualizer draws what names its prefix, or no prefix
     geometry.set_illustration_properties(hidden)
-    with TemporaryDirectory() as folder:  # read once, when the body is registered
+    with ExitStack() as cleanup:
         seen = PerceptionProperties()
         if filmed:
+            folder = cleanup.enter_context(TemporaryDirectory())  # read once, when the body is registered
             surface = Path(folder) / f"{shape.kind}.obj"
             write_render_mesh(shape, surface)
             seen.AddProperty("deformable", "embedded_mesh", str(surface))

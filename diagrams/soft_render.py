@@ -22,8 +22,7 @@ def write_render_mesh(shape: SoftShape, path: Path) -> None:
     Where the surface stands out of the coarse solid, it is drawn in.
     """
     surface, triangles = shape.surface, shape.surface.triangles
-    points = np.einsum("nk,nkd->nd", surface.weights, shape.mesh.vertices[surface.corners])
-    points = _drawn_in(shape.mesh, points)
+    points = _drawn_in(shape.mesh, surface.positions(shape.mesh.vertices))
     normals = np.zeros_like(points)
     edges = points[triangles[:, 1:]] - points[triangles[:, :1]]
     for corner in range(3):

@@ -191,7 +191,7 @@ def _tshirt(color: Rgb | None, segments: int) -> SoftShape:
         sleeve = Tube.bent(
             body.at(np.array(1.0 - 1.5 / segments), np.array(0.0), np.array(0.0)),
             0.095,
-            lambda s, sign=sign, root=root: root + sign * (1.3 + 0.0 * s),  # type: ignore[misc]
+            lambda s, sign=sign, root=root: np.full_like(s, root + sign * 1.3),  # type: ignore[misc]
             lambda s: 0.025 + 0.002 * s,
             lambda s: 0.027 - 0.003 * s,
         )
