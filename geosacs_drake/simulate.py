@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from pydrake.systems.analysis import Simulator, SimulatorStatus
-from pydrake.systems.framework import Context
+from pydrake.systems.framework import Context, EventStatus
 
 from diagrams.rest import Rest
 from diagrams.shared_autonomy import SharedAutonomy
@@ -39,6 +39,7 @@ def simulate(
     duration: float,
     rate: float = 0.0,
     report: Callable[[Progress], None] = lambda progress: None,
+    watch: Callable[[Context], None] | None = None,
 ) -> RunResult:
     """Simulate until the task is done, given up, interrupted or out of time.
 
@@ -50,6 +51,7 @@ def simulate(
         duration: longest simulated time [s].
         rate: real-time rate to aim at; 0 for as fast as possible.
         report: called after each half second.
+        watch: called after each step of the plant with the diagram's context, to measure what no port tells.
 
     Returns:
         What happened; a simulation that fails ends with the reason, and keeps what it had.
@@ -57,14 +59,20 @@ def simulate(
     simulator = Simulator(system.diagram)
     simulator.set_target_realtime_rate(rate)
     station = system.station
-    simulator.set_monitor(
-        Rest(
-            plant=station.plant,
-            scene_graph=station.scene_graph,
-            robot=station.scene.lio,
-            items=station.scene.items,
-        )
+    rest = Rest(
+        plant=station.plant,
+        scene_graph=station.scene_graph,
+        robot=station.scene.lio,
+        items=station.scene.items,
     )
+
+    def rest_and_watch(root_context: Context) -> EventStatus:
+        status = rest(root_context)
+        if watch is not None:
+            watch(root_context)
+        return status
+
+    simulator.set_monitor(rest if watch is None else rest_and_watch)
     root = simulator.get_context()
     monitor_context = system.monitor.GetMyContextFromRoot(root)
     interrupted = threading.Event()
