@@ -85,7 +85,8 @@ class Watch:
                     self._held = k, points[near].mean(axis=0), near
         if self._held is not None:
             k, before, near = self._held
-            slip = float(np.linalg.norm(self._points(plant_context, k, X_WT)[near].mean(axis=0) - before))
+            moved = self._points(plant_context, k, X_WT)[near].mean(axis=0) - before
+            slip = float(np.hypot(moved[0], moved[2]))  # along the pads; y is how they squeeze
             name = station.scene.items[k].name
             self.slip[name] = max(slip, self.slip.get(name, 0.0))
 

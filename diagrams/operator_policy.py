@@ -130,7 +130,7 @@ class OperatorPolicy:
             return
         thing = int(state.thing)
         if np.linalg.norm(sight.positions[thing] - sight.p_BT) < self.options.lost_m:
-            state.mode, state.aimed = Mode.CARRY, 0.0
+            state.mode, state.aimed, state.beside = Mode.CARRY, 0.0, self._room(sight, thing)
         else:
             self._try_again(state, tries)
 
@@ -144,14 +144,32 @@ class OperatorPolicy:
             return
         goal = self.goals[thing]
         # What must come to the mark is the thing, which may sit off the middle of the gripper.
-        if goal.precise:
-            aimed = self._aim(state, sight, self.p_BG[thing] - held, end=self.canal.n_disks - 1.0, time=time)
-        else:
-            aimed = True
+        target = self.p_BG[thing] - held if goal.precise else self._beside(state.beside)
+        aimed = self._aim(state, sight, target, end=self.canal.n_disks - 1.0, time=time)
         slip = not goal.precise and not tries[thing] and phase(self.canal, nav.disk) > self.options.let_go_at
         if slip or (aimed and nav.waiting):
             self._press(state, GRIPPER, time)
             state.mode = Mode.LEAVE
+
+    def _beside(self, side: float) -> np.ndarray:
+        """The middle of the last disk, or a point near its rim, level with it, to one side or the other. Shape (3,)."""
+        end = self.canal.n_disks - 1.0
+        x, y = self.canal.axes(end)
+        level = math.atan2(-x[2], y[2])  # φ of y_z x - x_z y, which is horizontal
+        return self.canal.point(end, abs(side) * self.options.lay_beside, level if side > 0 else level + math.pi)
+
+    def _room(self, sight: Sight, thing: int) -> float:
+        """Where a thing that may lie anywhere has most room beside those that are there: at a side first."""
+        there = [
+            p
+            for i, p in enumerate(sight.positions)
+            if i != thing and np.linalg.norm(p - self.canal.center(self.canal.n_disks - 1.0)) < NEAR_GOAL
+        ]
+        room = {}
+        for side in (-1.0, 1.0, 0.0):
+            spot = self._beside(side)
+            room[side] = min((math.hypot(*(p - spot)[:2]) for p in there), default=math.inf)
+        return max(room, key=room.__getitem__)
 
     def _leave(self, state: OperatorState, given_up: np.ndarray, tries: np.ndarray, sight: Sight, time: float) -> None:
         if Leg(int(sight.navigation.leg)) is Leg.HOME_TO_PLACE:  # let go before the end: the robot does not turn there

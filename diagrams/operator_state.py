@@ -55,8 +55,10 @@ class OperatorState:
     """Height of the gripper at the grip [m]."""
     aimed: float = 0.0
     """1 once the aim above the thing was good."""
+    beside: float = 0.0
+    """Where on the canal's last disk the thing in the hand is to go, if anywhere will do: -1 and 1 for its sides."""
 
-    SIZE = 10
+    SIZE = 11
 
     @staticmethod
     def unpack(vector: np.ndarray, n: int) -> tuple["OperatorState", np.ndarray, np.ndarray]:
@@ -67,5 +69,5 @@ class OperatorState:
     def pack(self, given_up: np.ndarray, tries: np.ndarray) -> np.ndarray:
         """Inverse of `unpack`."""
         mind = (self.mode, self.thing, self.busy_until, self.stick_x, self.stick_y, self.stick_until)
-        hand = (self.button, self.button_until, self.grip_height, self.aimed)
+        hand = (self.button, self.button_until, self.grip_height, self.aimed, self.beside)
         return np.concatenate([[*mind, *hand], given_up, tries])

@@ -93,7 +93,7 @@ class Contact:
     """Of the plant [s]; 10 ms is not to be trusted (grasps slip)."""
     approximation: str = "lagged"
     model: str = "hydroelastic_with_fallback"
-    stiction_tolerance: float = 1e-4
+    stiction_tolerance: float = 2e-4
     """Speed [m/s] below which friction holds; what is held creeps at up to this. Drake's default of 1e-3 let cloth slip
     2 mm in 3 s."""
 

@@ -15,6 +15,7 @@ from tempfile import TemporaryDirectory
 import numpy as np
 from pydrake.common import MemoryFile
 from pydrake.geometry import (
+    AddCompliantHydroelasticProperties,
     AddContactMaterial,
     GeometryId,
     GeometryInstance,
@@ -24,6 +25,7 @@ from pydrake.geometry import (
     PerceptionProperties,
     ProximityProperties,
     Rgba,
+    Sphere,
 )
 from pydrake.math import RigidTransform
 from pydrake.multibody.fem import DeformableBodyConfig, MaterialModel
@@ -74,6 +76,8 @@ class SoftItem:
     shape: SoftShape
     body_id: DeformableBodyId
     geometry_id: GeometryId
+    cast_id: GeometryId
+    """Of a solid fixed to the world that takes the piece's shape while it rests (`diagrams.resting_piece`)."""
 
 
 def add_soft_item(
@@ -118,7 +122,19 @@ def add_soft_item(
         geometry.set_perception_properties(seen)
         model = plant.mutable_deformable_model()
         body_id = model.RegisterDeformableBody(geometry, config, 1.0)  # the hint is ignored for a mesh
-    return SoftItem(name, shape, body_id, model.GetGeometryId(body_id))
+    solid = ProximityProperties()
+    AddContactMaterial(properties=solid, friction=CoulombFriction(material.friction, material.friction))
+    AddCompliantHydroelasticProperties(CAST_RADIUS, CAST_MODULUS, solid)
+    world, out_of_the_way = plant.world_body(), RigidTransform([0.0, 0.0, -1.0])
+    cast_id = plant.RegisterCollisionGeometry(world, out_of_the_way, Sphere(CAST_RADIUS), f"{name}_cast", solid)
+    return SoftItem(name, shape, body_id, model.GetGeometryId(body_id), cast_id)
+
+
+CAST_RADIUS = 0.03
+"""Of the ball that a cast is before the piece first rests [m]: half as thick as a piece, so that the contact gradient
+of what cloth meets (`diagrams.soft_contact`) is that of the cast too."""
+CAST_MODULUS = 1e6
+"""[Pa]; set anew with the gradient of the surroundings."""
 
 
 def soft_positions(plant: MultibodyPlant, context: Context, item: SoftItem) -> np.ndarray:

@@ -1,0 +1,124 @@
+"""One piece that can rest: fixed where it lies, still there for what falls on it, and not computed.
+
+A resting rigid piece is locked (`RigidBody.Lock`), which leaves its shape where it is. A resting soft one is disabled
+(`DeformableModel.Disable`), and then Drake no longer lets anything touch it: what is touched in its place is its *cast*,
+a solid of the same tetrahedra, fixed to the world, that takes the piece's shape each time it comes to rest.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+from pydrake.common import MemoryFile
+from pydrake.geometry import GeometryId, InMemoryMesh, Mesh, SceneGraph
+from pydrake.math import RigidTransform
+from pydrake.multibody.plant import MultibodyPlant
+from pydrake.systems.framework import Context
+
+from diagrams.scene import RigidItem
+from diagrams.soft_items import SoftItem, soft_positions, soft_velocities
+from diagrams.soft_meshes import TetMesh
+
+
+class Piece(Protocol):
+    """What rest needs to know of a piece, and do to it. Contexts are the plant's, but for `root`, the diagram's."""
+
+    @property
+    def own(self) -> list[GeometryId]:
+        """Its shapes while it is awake."""
+        ...
+
+    @property
+    def at_rest(self) -> list[GeometryId]:
+        """What is in their place while it rests."""
+        ...
+
+    def speed(self, context: Context, size: float) -> float:
+        """Of its fastest point [m/s], at most `size` [m] from its middle; infinite where it stands still only for a
+        moment."""
+        ...
+
+    def is_awake(self, context: Context) -> bool: ...
+
+    def wake(self, root: Context) -> None: ...
+
+    def rest(self, root: Context) -> None: ...
+
+
+@dataclass(frozen=True)
+class SoftPiece:
+    """A deformable body and its cast."""
+
+    plant: MultibodyPlant
+    scene_graph: SceneGraph
+    item: SoftItem
+
+    @property
+    def own(self) -> list[GeometryId]:
+        return [self.item.geometry_id]
+
+    @property
+    def at_rest(self) -> list[GeometryId]:
+        return [self.item.cast_id]
+
+    def speed(self, context: Context, size: float) -> float:
+        if not self.is_awake(context):
+            return 0.0
+        return float(np.sqrt((soft_velocities(self.plant, context, self.item) ** 2).sum(axis=1).max()))
+
+    def is_awake(self, context: Context) -> bool:
+        return self.plant.deformable_model().is_enabled(self.item.body_id, context)
+
+    def wake(self, root: Context) -> None:
+        self.plant.deformable_model().Enable(self.item.body_id, self.plant.GetMyMutableContextFromRoot(root))
+
+    def rest(self, root: Context) -> None:
+        context = self.plant.GetMyMutableContextFromRoot(root)
+        self.plant.deformable_model().Disable(self.item.body_id, context)
+        nodes = soft_positions(self.plant, context, self.item)
+        text = TetMesh(nodes, self.item.shape.mesh.tetrahedra).to_vtk()
+        cast = Mesh(InMemoryMesh(mesh_file=MemoryFile(text, ".vtk", f"{self.item.name}_cast.vtk")))
+        geometry = self.scene_graph.GetMyMutableContextFromRoot(root)
+        self.scene_graph.ChangeShape(geometry, self.plant.get_source_id(), self.item.cast_id, cast, RigidTransform())
+
+
+@dataclass(frozen=True)
+class RigidPiece:
+    """A rigid body."""
+
+    plant: MultibodyPlant
+    item: RigidItem
+
+    @property
+    def own(self) -> list[GeometryId]:
+        return self.plant.GetCollisionGeometriesForBody(self.item.body)
+
+    @property
+    def at_rest(self) -> list[GeometryId]:
+        return self.own
+
+    def speed(self, context: Context, size: float) -> float:
+        if not self.is_awake(context):
+            return 0.0
+        V = self.plant.EvalBodySpatialVelocityInWorld(context, self.item.body)
+        speed = float(np.linalg.norm(V.translational()) + np.linalg.norm(V.rotational()) * size)
+        if speed > STILL:
+            return speed
+        A = self.plant.EvalBodySpatialAccelerationInWorld(context, self.item.body)
+        turning = np.linalg.norm(A.translational()) + np.linalg.norm(A.rotational()) * size
+        return float("inf") if turning > UNMOVED else speed
+
+    def is_awake(self, context: Context) -> bool:
+        return not self.item.body.is_locked(context)
+
+    def wake(self, root: Context) -> None:
+        self.item.body.Unlock(self.plant.GetMyMutableContextFromRoot(root))
+
+    def rest(self, root: Context) -> None:
+        self.item.body.Lock(self.plant.GetMyMutableContextFromRoot(root))
+
+
+STILL = 0.003  # [m/s], of the fastest node; settled piles creep at 0.0001
+UNMOVED = 0.05  # [m/s²]: where a rocking bundle turns it has no speed either, but 0.1 and more of this
