@@ -62,9 +62,8 @@ class Rest:
                 links[body] = extents
         self._n_links = len(links)
         self._rigid = [k for k, item in enumerate(items) if isinstance(item, RigidItem)]
-        self._soft = [
-            (k, item, item.shape.mesh.boundary()) for k, item in enumerate(items) if isinstance(item, SoftItem)
-        ]
+        self._soft = [(k, item) for k, item in enumerate(items) if isinstance(item, SoftItem)]
+        self._triangles = {k: (item, item.shape.mesh.boundary()) for k, item in self._soft}
         rigid_items = [item for item in items if isinstance(item, RigidItem)]
         self._bodies = [*links, *(item.body for item in rigid_items)]
         self._bounds = BodyBounds([*links.values(), *(item.extents for item in rigid_items)])
@@ -74,16 +73,19 @@ class Rest:
         step = round(root_context.get_time() / self._plant.time_step())
         if root_context.get_time() < SETTLING or step % max(1, round(PERIOD / self._plant.time_step())):
             return EventStatus.DidNothing()
-        context = self._plant.GetMyContextFromRoot(root_context)
-        wanted = self.awake(context)
-        changed = False
-        for piece, awake in zip(self._pieces, wanted, strict=True):
-            if awake != piece.is_awake(context):
-                (piece.wake if awake else piece.rest)(root_context)
-                changed = True
-        if changed:
-            self._filter(root_context, wanted)
+        self.set_awake(root_context, self.awake(self._plant.GetMyContextFromRoot(root_context)))
         return EventStatus.Succeeded()
+
+    def set_awake(self, root_context: Context, wanted: np.ndarray) -> None:
+        """Wake the pieces that `wanted` (n,) names, and put the others to rest."""
+        context = self._plant.GetMyContextFromRoot(root_context)
+        before = [piece.is_awake(context) for piece in self._pieces]
+        if wanted.tolist() == before:
+            return
+        for piece, was, awake in zip(self._pieces, before, wanted.tolist(), strict=True):
+            if awake != was:
+                (piece.wake if awake else piece.rest)(root_context)
+        self._filter(root_context, wanted)
 
     def _filter(self, root_context: Context, awake: np.ndarray) -> None:
         """Let what is awake meet everything, and what rests only what is awake."""
@@ -105,46 +107,49 @@ class Rest:
         bounds = self._bounds([self._plant.EvalBodyPoseInWorld(context, body) for body in self._bodies])
         links, pieces = bounds[: self._n_links], np.empty((len(self._pieces), 6))
         pieces[self._rigid] = bounds[self._n_links :]
-        parts = {k: pieces[k : k + 1] for k in self._rigid}
-        for k, item, triangles in self._soft:
+        for k, item in self._soft:
             nodes = soft_positions(self._plant, context, item)
-            corners = nodes[triangles]
-            parts[k] = np.hstack([corners.min(axis=1), corners.max(axis=1)])
-            pieces[k] = (*nodes.min(axis=0), *nodes.max(axis=0))
-        touched = self._touched(links, pieces, parts)
+            pieces[k, :3], pieces[k, 3:] = nodes.min(axis=0), nodes.max(axis=0)
+        touched = self._touched(context, links, pieces)
+        was_awake = np.array([piece.is_awake(context) for piece in self._pieces])
+        if not (touched | was_awake).any():
+            return touched
         sizes = np.linalg.norm(pieces[:, 3:] - pieces[:, :3], axis=1) / 2
         speed = np.array([p.speed(context, size) for p, size in zip(self._pieces, sizes, strict=True)])
         moving = speed > STILL
-        awake = touched | moving
-        if not awake.any():
-            return awake
-        near = self._near(pieces, parts, speed)
+        near = self._near(context, pieces, speed)
         heights = pieces[:, 2] + pieces[:, 5]
         below = heights[None, :] < heights[:, None]  # [i, j]: j is lower than i
         carried = (near & below & moving[None, :]).any(axis=1)
-        was_awake = np.array([piece.is_awake(context) for piece in self._pieces])
         stirred = (near & touched[None, :]).any(axis=1)
         if (stirred & ~was_awake).any():
             stirred &= was_awake | self._pressed(context, touched)
-        return awake | carried | stirred
+        return touched | moving | carried | stirred
 
-    def _touched(self, links: np.ndarray, pieces: np.ndarray, parts: dict[int, np.ndarray]) -> np.ndarray:
+    def _parts(self, context: Context, pieces: np.ndarray, k: int) -> np.ndarray:
+        """Bounds of the parts of piece k: of the triangles of a soft one. Shape (m, 6)."""
+        if k not in self._triangles:
+            return pieces[k : k + 1]
+        item, triangles = self._triangles[k]
+        corners = soft_positions(self._plant, context, item)[triangles]
+        return np.hstack([corners.min(axis=1), corners.max(axis=1)])
+
+    def _touched(self, context: Context, links: np.ndarray, pieces: np.ndarray) -> np.ndarray:
         """Which pieces the robot is near to. Shape (n,), bool."""
-        touched = _gaps(pieces, links) < ROBOT_NEAR
-        for k, *_ in self._soft:
-            if touched[k].any():
-                touched[k] = (_gaps(parts[k], links) < ROBOT_NEAR).any(axis=0)
-        return touched.any(axis=1)
+        touched = (_gaps(pieces, links) < ROBOT_NEAR).any(axis=1)
+        for k in np.flatnonzero(touched).tolist():
+            touched[k] = (_gaps(self._parts(context, pieces, k), links) < ROBOT_NEAR).any()
+        return touched
 
-    def _near(self, pieces: np.ndarray, parts: dict[int, np.ndarray], speed: np.ndarray) -> np.ndarray:
+    def _near(self, context: Context, pieces: np.ndarray, speed: np.ndarray) -> np.ndarray:
         """Which pieces are near which others, or will be. Shape (n, n), bool."""
         reach = NEAR + 2.0 * PERIOD * np.where(np.isfinite(speed), speed, 0.0)
         reach = np.maximum(reach[:, None], reach[None, :])
         near = _gaps(pieces, pieces) < reach
+        for i, j in np.argwhere(np.triu(near, 1)).tolist():
+            gaps = _gaps(self._parts(context, pieces, i), self._parts(context, pieces, j))
+            near[i, j] = near[j, i] = (gaps < reach[i, j]).any()
         np.fill_diagonal(near, False)
-        for i, *_ in self._soft:
-            for j in np.flatnonzero(near[i]).tolist():
-                near[i, j] = near[j, i] = (_gaps(parts[i], parts[j]) < reach[i, j]).any()
         return near
 
     def _pressed(self, context: Context, touched: np.ndarray) -> np.ndarray:

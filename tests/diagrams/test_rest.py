@@ -1,4 +1,4 @@
-"""Rigid pieces rest when nothing is near, wake before they are touched, and rest changes nothing that is seen."""
+"""Rigid pieces rest where they lie, hold what falls on them, and wake before they are touched."""
 
 import numpy as np
 from pydrake.multibody.math import SpatialVelocity
@@ -39,19 +39,39 @@ def test_settled_pieces_rest_where_they_came_to_rest():
     np.testing.assert_array_equal(station.GetOutputPort("item_poses").Eval(simulator.get_context()), before)
 
 
-def test_a_piece_that_falls_wakes_the_one_beneath_before_it_lands():
-    station, rest, simulator = station_at_rest(3.0)
+def put_above(station, rest, simulator, height: float):
+    """The second piece, awake, `height` [m] above the first, falling; plant, context, the first and the second."""
     plant = station.plant
     context = plant.GetMyMutableContextFromRoot(simulator.get_mutable_context())
-    below, above, elsewhere = station.scene.rigid_items
-    above.body.Unlock(context)
+    below, above, _ = station.scene.rigid_items
+    rest.set_awake(simulator.get_mutable_context(), np.array([False, True, False]))
     pose = plant.EvalBodyPoseInWorld(context, above.body)
-    beneath = plant.EvalBodyPoseInWorld(context, below.body).translation()
-    pose.set_translation(beneath + [0, 0, 0.12])
+    pose.set_translation(plant.EvalBodyPoseInWorld(context, below.body).translation() + [0, 0, height])
     plant.SetFreeBodyPose(context, above.body, pose)
-    falling = SpatialVelocity(w=np.zeros(3), v=np.array([0, 0, -1.5]))
-    plant.SetFreeBodySpatialVelocity(context, above.body, falling)
-    assert rest.awake(context).tolist() == [True, True, False], (below.name, above.name, elsewhere.name)
+    plant.SetFreeBodySpatialVelocity(context, above.body, SpatialVelocity(w=np.zeros(3), v=np.array([0, 0, -0.5])))
+    return plant, context, below, above
+
+
+def test_a_resting_piece_holds_what_falls_on_it():
+    station, rest, simulator = station_at_rest(3.0)
+    plant, context, below, above = put_above(station, rest, simulator, 0.12)
+    assert rest.awake(context).tolist() == [False, True, False]
+    before = plant.EvalBodyPoseInWorld(context, below.body).translation().copy()
+    lowest = np.inf
+    for _ in range(30):
+        simulator.AdvanceTo(simulator.get_context().get_time() + 0.01)
+        lowest = min(lowest, plant.EvalBodyPoseInWorld(context, above.body).translation()[2] - before[2])
+    np.testing.assert_array_equal(plant.EvalBodyPoseInWorld(context, below.body).translation(), before)
+    assert lowest > 0.04, "both are some 5 cm thick"
+
+
+def test_what_moves_below_a_resting_piece_wakes_it():
+    station, rest, simulator = station_at_rest(3.0)
+    _, context, below, above = put_above(station, rest, simulator, 0.06)
+    rest.set_awake(simulator.get_mutable_context(), np.array([True, False, False]))
+    moving = SpatialVelocity(w=np.zeros(3), v=np.array([0.1, 0, 0]))
+    station.plant.SetFreeBodySpatialVelocity(context, below.body, moving)
+    assert rest.awake(context).tolist() == [True, True, False]
 
 
 def test_the_robot_near_a_piece_keeps_it_awake():

@@ -69,6 +69,29 @@ def test_soft_bodies_keep_each_other_apart():
     assert rig.nodes(1)[:, 2].mean() - rig.nodes(0)[:, 2].mean() > 0.015
 
 
+def test_what_falls_on_a_resting_piece_lies_where_it_would_on_one_that_is_awake():
+    """A sock on a sock: the heights differ by less than 3 mm, and the resting one stays where it is, bit for bit."""
+    pieces = [("low", make_shape("sock"), [0.45, 0.0, 0.325], 0.0), ("high", make_shape("sock"), [0.45, 0.2, 0.325], 0.0)]
+    heights = []
+    for awake in (True, False):
+        rig = Rig(pieces, Setting())
+        scene_graph = rig.diagram.GetSubsystemByName("scene_graph")
+        robot = rig.palm.model_instance()
+        rest = Rest(plant=rig.plant, scene_graph=scene_graph, robot=robot, items=rig.items)
+        rig.wait(0.6)
+        rest.set_awake(rig.root, np.array([False, False]))
+        before = rig.nodes(0).copy()
+        lifted = rig.nodes(1) + [0.0, -0.2, 0.1]
+        rig.plant.deformable_model().SetPositions(rig.context, rig.items[1].body_id, lifted.T)
+        rest.set_awake(rig.root, np.array([awake, True]))
+        rig.wait(0.8)
+        heights.append(rig.nodes(1)[:, 2].mean())
+        if not awake:
+            np.testing.assert_array_equal(rig.nodes(0), before)
+    assert min(heights) > FLOOR + 0.03, "on it, not in it"
+    assert abs(heights[1] - heights[0]) < 3e-3
+
+
 def test_still_pieces_rest_and_wake_before_they_are_touched():
     shape = make_shape("sock")
     pieces = [("one", shape, [0.45, 0.0, 0.325], 0.0), ("other", shape, [0.45, 0.2, 0.325], 0.0)]
