@@ -38,7 +38,7 @@ SURROUNDINGS_GRADIENT = 3.0e7
 PAD_GRADIENT = 1.0e7
 """g of the robot's shapes [Pa/m]: the pads press with 13 kPa, and sink in by 1.3 mm."""
 
-MARGIN = 0.002
+MARGIN = 0.001
 """How far off a surface contact is foreseen [m]. A contact point is the middle of the part of a triangle that is nearer
 than this, so that a corner that points down lies as deep as twice the margin before anything holds it: 8 mm at rest
 with 5 mm. What falls faster than 1 m/s sinks in by what it falls in a step of 5 ms, less the margin."""
