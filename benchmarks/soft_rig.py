@@ -24,6 +24,7 @@ from pydrake.systems.framework import DiagramBuilder
 from diagrams.lio_station import plant_config
 from diagrams.scenario import Contact
 from diagrams.soft_contact import MARGIN, prepare_for_cloth
+from diagrams.soft_depth import FixedBoxes
 from diagrams.soft_items import SoftMaterial, add_soft_item, node_masses, soft_positions, soft_velocities
 from diagrams.soft_shapes import SoftShape
 
@@ -37,7 +38,7 @@ class Setting:
 
     time_step: float = 0.005
     approximation: str = "lagged"
-    stiction_tolerance: float = 1e-4
+    stiction_tolerance: float = Contact().stiction_tolerance
     gradient: float | None = None
     """Pressure gradient of rigid shapes [Pa/m]; None: as in the station."""
     margin: float = MARGIN
@@ -126,6 +127,7 @@ class Rig:
             **gradients,
         )
         self.plant.Finalize()
+        self._boxes = FixedBoxes(self.plant, scene_graph.model_inspector(), [world_model_instance()])
         builder.ExportInput(self.plant.get_desired_state_input_port(hand), "hand")
         self.diagram = builder.Build()
         self.simulator = Simulator(self.diagram)
@@ -157,6 +159,10 @@ class Rig:
         """Of piece k in the palm's frame [m], shape (N, 3)."""
         X_WP = self.plant.EvalBodyPoseInWorld(self.context, self.palm)
         return X_WP.inverse().multiply(self.nodes(k).T).T
+
+    def depth(self, k: int) -> float:
+        """Of the node of piece k that lies deepest in floor or drum [m]."""
+        return self._boxes.depth(self.nodes(k))
 
     def speed(self, k: int) -> float:
         """Of the fastest node of piece k [m/s]."""

@@ -1,4 +1,4 @@
-"""The inverse kinematics as a system: a wanted pose in, a joint command out, 100 times a second."""
+"""The inverse kinematics as a system: a wanted pose in, a joint command out, at the control rate."""
 
 import enum
 from typing import Any
@@ -12,7 +12,7 @@ from canal.errors import InputError
 from diagrams.ik_options import IkOptions
 from diagrams.ik_solver import IkSolver
 
-CONTROL_PERIOD = 0.01  # [s], the contract of the arm's controller: 100 Hz
+CONTROL_PERIOD = 0.01  # [s]
 
 
 class IkStatusField(enum.IntEnum):

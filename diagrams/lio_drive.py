@@ -14,7 +14,7 @@ CLOSE_TARGET = -0.1
 """Where the closed gripper aims [rad]: past closed, so that the drive's effort limit makes the grip, not its spring."""
 GRIPPER_SPEED = 1.047
 """[rad/s] (SPEC section 6)."""
-PERIOD = 0.01
+PERIOD = 0.02
 
 
 class LioDrive(LeafSystem):

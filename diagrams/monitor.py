@@ -142,6 +142,6 @@ class Monitor(LeafSystem):
 
 
 CORRECTING, RUNNING = FIELD_NAMES.index("correcting"), FIELD_NAMES.index("running")
-"""Places in the navigation state: of 21 numbers these two are all that is needed 100 times a second."""
+"""Places in the navigation state: of 21 numbers these two are all that is needed at the control rate."""
 JUDGING_PERIOD = 0.05
 """[s] The things are judged 20 times a second."""

@@ -19,7 +19,7 @@ from pydrake.systems.framework import Context, EventStatus
 
 from diagrams.resting_piece import STILL, Piece, RigidPiece, SoftPiece
 from diagrams.scene import RigidItem
-from diagrams.shape_bounds import BodyBounds, extent
+from diagrams.shape_bounds import BoxBounds, extent
 from diagrams.soft_items import SoftItem, soft_positions
 
 PERIOD = 0.02  # [s]
@@ -66,7 +66,7 @@ class Rest:
         self._triangles = {k: (item, item.shape.mesh.boundary()) for k, item in self._soft}
         rigid_items = [item for item in items if isinstance(item, RigidItem)]
         self._bodies = [*links, *(item.body for item in rigid_items)]
-        self._bounds = BodyBounds([*links.values(), *(item.extents for item in rigid_items)])
+        self._bounds = BoxBounds([*links.values(), *(item.extents for item in rigid_items)])
 
     def __call__(self, root_context: Context) -> EventStatus:
         """Look, if it is time to; `root_context` belongs to the diagram that the plant is in."""

@@ -1,8 +1,8 @@
 """One piece that can rest: fixed where it lies, still there for what falls on it, and not computed.
 
 A resting rigid piece is locked (`RigidBody.Lock`), which leaves its shape where it is. A resting soft one is disabled
-(`DeformableModel.Disable`), and then Drake no longer lets anything touch it: what is touched in its place is its *cast*,
-a solid of the same tetrahedra, fixed to the world, that takes the piece's shape each time it comes to rest.
+(`DeformableModel.Disable`), and then Drake no longer lets anything touch it: what is touched in its place is its
+*cast*, a solid of the same tetrahedra, fixed to the world, that takes the piece's shape each time it comes to rest.
 """
 
 from __future__ import annotations
@@ -40,11 +40,17 @@ class Piece(Protocol):
         moment."""
         ...
 
-    def is_awake(self, context: Context) -> bool: ...
+    def is_awake(self, context: Context) -> bool:
+        """Whether it is simulated."""
+        ...
 
-    def wake(self, root: Context) -> None: ...
+    def wake(self, root: Context) -> None:
+        """Simulate it from now on."""
+        ...
 
-    def rest(self, root: Context) -> None: ...
+    def rest(self, root: Context) -> None:
+        """Fix it where it is."""
+        ...
 
 
 @dataclass(frozen=True)
@@ -57,24 +63,30 @@ class SoftPiece:
 
     @property
     def own(self) -> list[GeometryId]:
+        """See `Piece`."""
         return [self.item.geometry_id]
 
     @property
     def at_rest(self) -> list[GeometryId]:
+        """See `Piece`."""
         return [self.item.cast_id]
 
     def speed(self, context: Context, size: float) -> float:
+        """See `Piece`."""
         if not self.is_awake(context):
             return 0.0
         return float(np.sqrt((soft_velocities(self.plant, context, self.item) ** 2).sum(axis=1).max()))
 
     def is_awake(self, context: Context) -> bool:
+        """See `Piece`."""
         return self.plant.deformable_model().is_enabled(self.item.body_id, context)
 
     def wake(self, root: Context) -> None:
+        """See `Piece`."""
         self.plant.deformable_model().Enable(self.item.body_id, self.plant.GetMyMutableContextFromRoot(root))
 
     def rest(self, root: Context) -> None:
+        """See `Piece`."""
         context = self.plant.GetMyMutableContextFromRoot(root)
         self.plant.deformable_model().Disable(self.item.body_id, context)
         nodes = soft_positions(self.plant, context, self.item)
@@ -93,13 +105,16 @@ class RigidPiece:
 
     @property
     def own(self) -> list[GeometryId]:
+        """See `Piece`."""
         return self.plant.GetCollisionGeometriesForBody(self.item.body)
 
     @property
     def at_rest(self) -> list[GeometryId]:
+        """See `Piece`."""
         return self.own
 
     def speed(self, context: Context, size: float) -> float:
+        """See `Piece`."""
         if not self.is_awake(context):
             return 0.0
         V = self.plant.EvalBodySpatialVelocityInWorld(context, self.item.body)
@@ -111,12 +126,15 @@ class RigidPiece:
         return float("inf") if turning > UNMOVED else speed
 
     def is_awake(self, context: Context) -> bool:
+        """See `Piece`."""
         return not self.item.body.is_locked(context)
 
     def wake(self, root: Context) -> None:
+        """See `Piece`."""
         self.item.body.Unlock(self.plant.GetMyMutableContextFromRoot(root))
 
     def rest(self, root: Context) -> None:
+        """See `Piece`."""
         self.item.body.Lock(self.plant.GetMyMutableContextFromRoot(root))
 
 

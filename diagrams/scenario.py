@@ -146,7 +146,9 @@ class Scenario:
     ik: IkOptions = field(default_factory=IkOptions)
     operator: OperatorOptions = field(default_factory=OperatorOptions)
     monitor: MonitorOptions = field(default_factory=MonitorOptions)
-    control_rate_hz: float = 100.0
+    control_rate_hz: float = 50.0
+    """Of navigator, IK and monitor (paper: 20 Hz); at 100 Hz the tool keeps within 3.6 mm instead of 5.5, and a run
+    takes a third longer."""
     folder: str = ""
     """Where relative paths start; set on loading."""
 

@@ -48,8 +48,8 @@ class SoftMaterial:
     poissons_ratio : float
         Small, since gathered cloth hardly widens when it is squeezed. Unitless.
     stiffness_damping, mass_damping : float
-        Rayleigh coefficients in [s] and [1/s]; the second stands for the air: nothing falls faster than g / 5 = 2 m/s, about
-        what a shirt does that is dropped open.
+        Rayleigh coefficients in [s] and [1/s]; the second stands for the air: nothing falls faster than g / 5 = 2 m/s,
+        about what a shirt does that is dropped open.
     friction : float
         Coulomb coefficient, static = dynamic. Drake combines two surfaces as 2 a b / (a + b).
     """

@@ -72,8 +72,8 @@ class Hand:
 
 
 # Headings follow the azimuth, so that the arm moves in its own plane; the pitch keeps joint 5 (0.416 m behind the TCP)
-# within 0.33-0.58 m of the shoulder and in front of the column, and the gripper bent off the forearm by 20° and more: at
-# 0° nothing moves the hand to a side without turning joint 4 by 90°.
+# within 0.33-0.58 m of the shoulder and in front of the column, and the gripper bent off the forearm by 20° and more:
+# at 0° nothing moves the hand to a side without turning joint 4 by 90°.
 LAUNDRY = Task(
     "laundry",
     [

@@ -15,7 +15,7 @@ from pydrake.geometry import (
 from pydrake.math import RigidTransform, RotationMatrix
 from scipy.spatial.transform import Rotation
 
-from diagrams.shape_bounds import BodyBounds, Extent, extent
+from diagrams.shape_bounds import BodyBounds, BoxBounds, Extent, extent
 
 
 def pose(seed):
@@ -61,3 +61,15 @@ def test_a_body_is_the_union_of_its_shapes():
     balls = [Extent(np.array([[x, 0.0, 0.0]]), 0.1 * np.eye(3)) for x in (0.0, 1.0, 5.0)]
     bounds = BodyBounds([balls[:2], balls[2:]])([RigidTransform([0, 0, 1.0]), RigidTransform([0, 2.0, 0])])
     assert bounds == pytest.approx(np.array([[-0.1, -0.1, 0.9, 1.1, 0.1, 1.1], [4.9, 1.9, -0.1, 5.1, 2.1, 0.1]]))
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_quick_bounds_hold_the_tight_ones(seed):
+    rng = np.random.default_rng(seed)
+    bodies = [[Extent(rng.normal(size=(7, 3)), 0.3 * rng.normal(size=(3, 3))) for _ in range(2)] for _ in range(4)]
+    poses = [pose(k) for k in range(4)]
+    tight, quick = BodyBounds(bodies)(poses), BoxBounds(bodies)(poses)
+    assert np.all(quick[:, :3] <= tight[:, :3] + 1e-12)
+    assert np.all(quick[:, 3:] >= tight[:, 3:] - 1e-12)
+    upright = [RigidTransform([k, 0.0, 0.0]) for k in range(4)]
+    assert BoxBounds([b[:1] for b in bodies])(upright) == pytest.approx(BodyBounds([b[:1] for b in bodies])(upright))

@@ -135,7 +135,7 @@ def test_drive_ramps_the_gripper_and_holds_what_is_not_finite():
     simulator.AdvanceTo(0.105)
     out = drive.GetOutputPort("actuator_state").Eval(context)
     assert out[:6] == pytest.approx(START_POSTURE + 0.1)
-    assert out[6] == pytest.approx(OPEN_ANGLE - 11 * 0.01 * GRIPPER_SPEED)
+    assert out[6] == pytest.approx(OPEN_ANGLE - 6 * 0.02 * GRIPPER_SPEED)
     wanted.GetMutableData().set_value(np.full(12, np.nan))
     simulator.AdvanceTo(2.0)
     out = drive.GetOutputPort("actuator_state").Eval(context)

