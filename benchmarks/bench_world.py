@@ -6,6 +6,7 @@ second by half second. Each run is a process of its own.
 """
 
 import argparse
+import math
 import multiprocessing
 import time
 from concurrent.futures import ProcessPoolExecutor
@@ -100,12 +101,15 @@ class Watch:
         return X_WT.inverse().multiply(points.T).T
 
 
-def measure(name: str, kind: str | None, seed: int) -> dict[str, tuple[float, str]]:
-    """One run: metrics with their units."""
+def measure(name: str, kind: str | None, seed: int, orientation: bool = True) -> dict[str, tuple[float, str]]:
+    """One run: metrics with their units. Without `orientation` its weight is zero, and no contact stops the robot."""
     scenario = load_scenario(name)
     if kind is not None:
         scenario = with_items(scenario, kind)
     canal = prepare_canal(scenario, RunOptions(headless=True))
+    if not orientation:
+        canal = canal.with_(orientation_weights=np.zeros(canal.n_disks))
+        scenario.monitor.force_limit_n = math.inf
     system = build_shared_autonomy(scenario=scenario, canal=canal, seed=seed)
     watch = Watch(system)
     names = [item.name for item in scenario.items]
@@ -134,6 +138,7 @@ def main() -> None:
     parser.add_argument("--items", choices=("soft", "rigid"))
     parser.add_argument("--seeds", type=int, default=20, help="how many, from --first on")
     parser.add_argument("--first", type=int, default=0)
+    parser.add_argument("--without-orientation", action="store_true", help="as the paper's ablation")
     parser.add_argument("--jobs", type=int, default=2, help="runs at a time")
     parser.add_argument("--output", type=Path, default=Path("build/bench-world.csv"))
     arguments = parser.parse_args()
@@ -141,7 +146,7 @@ def main() -> None:
     spawn = multiprocessing.get_context("spawn")
     with ProcessPoolExecutor(arguments.jobs, mp_context=spawn, max_tasks_per_child=1) as pool:
         runs = {
-            (name, seed): pool.submit(measure, name, arguments.items, seed)
+            (name, seed): pool.submit(measure, name, arguments.items, seed, not arguments.without_orientation)
             for name in arguments.scenario
             for seed in range(arguments.first, arguments.first + arguments.seeds)
         }
