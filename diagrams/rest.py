@@ -12,7 +12,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
-from pydrake.geometry import CollisionFilterDeclaration, GeometryId, GeometrySet, Role, SceneGraph
+from pydrake.geometry import CollisionFilterDeclaration, GeometrySet, Role, SceneGraph
 from pydrake.multibody.plant import MultibodyPlant
 from pydrake.multibody.tree import ModelInstanceIndex
 from pydrake.systems.framework import Context, EventStatus
@@ -117,14 +117,19 @@ class Rest:
         sizes = np.linalg.norm(pieces[:, 3:] - pieces[:, :3], axis=1) / 2
         speed = np.array([p.speed(context, size) for p, size in zip(self._pieces, sizes, strict=True)])
         moving = speed > STILL
-        near = self._near(context, pieces, speed)
+        active = touched | moving
+        awake = active.copy()
         heights = pieces[:, 2] + pieces[:, 5]
-        below = heights[None, :] < heights[:, None]  # [i, j]: j is lower than i
-        carried = (near & below & moving[None, :]).any(axis=1)
-        stirred = (near & touched[None, :]).any(axis=1)
-        if (stirred & ~was_awake).any():
-            stirred &= was_awake | self._pressed(context, touched)
-        return touched | moving | carried | stirred
+        for i in np.flatnonzero(~active).tolist():
+            for j in np.flatnonzero(active).tolist():
+                if not self._near(
+                    context, pieces, i, j, NEAR + (2.0 * PERIOD * speed[j] if np.isfinite(speed[j]) else 0)
+                ):
+                    continue
+                carried = moving[j] and heights[j] < heights[i]
+                stirred = touched[j] and (was_awake[i] or self._pressed(context, i, j))
+                awake[i] |= carried or stirred
+        return awake
 
     def _parts(self, context: Context, pieces: np.ndarray, k: int) -> np.ndarray:
         """Bounds of the parts of piece k: of the triangles of a soft one. Shape (m, 6)."""
@@ -141,35 +146,26 @@ class Rest:
             touched[k] = (_gaps(self._parts(context, pieces, k), links) < ROBOT_NEAR).any()
         return touched
 
-    def _near(self, context: Context, pieces: np.ndarray, speed: np.ndarray) -> np.ndarray:
-        """Which pieces are near which others, or will be. Shape (n, n), bool."""
-        reach = NEAR + 2.0 * PERIOD * np.where(np.isfinite(speed), speed, 0.0)
-        reach = np.maximum(reach[:, None], reach[None, :])
-        near = _gaps(pieces, pieces) < reach
-        for i, j in np.argwhere(np.triu(near, 1)).tolist():
-            gaps = _gaps(self._parts(context, pieces, i), self._parts(context, pieces, j))
-            near[i, j] = near[j, i] = (gaps < reach[i, j]).any()
-        np.fill_diagonal(near, False)
-        return near
+    def _near(self, context: Context, pieces: np.ndarray, i: int, j: int, reach: float) -> bool:
+        """Whether pieces i and j are nearer to each other than `reach` [m]."""
+        if _gaps(pieces[i : i + 1], pieces[j : j + 1]).item() >= reach:
+            return False
+        return bool((_gaps(self._parts(context, pieces, i), self._parts(context, pieces, j)) < reach).any())
 
-    def _pressed(self, context: Context, touched: np.ndarray) -> np.ndarray:
-        """Which pieces are pressed by one that the robot is near to. Shape (n,), bool."""
+    def _pressed(self, context: Context, i: int, j: int) -> bool:
+        """Whether the awake piece j presses hard on the resting one, i."""
         results = self._plant.get_contact_results_output_port().Eval(context)
-        forces = np.zeros(len(self._pieces))
-        contacts: list[tuple[GeometryId, GeometryId, np.ndarray]] = []
-        for i in range(results.num_deformable_contacts()):
-            info = results.deformable_contact_info(i)
-            contacts.append((info.id_A(), info.id_B(), info.F_Ac_W().translational()))
-        for i in range(results.num_hydroelastic_contacts()):
-            patch = results.hydroelastic_contact_info(i)
+        pair, force = {i, j}, 0.0
+        for k in range(results.num_deformable_contacts()):
+            info = results.deformable_contact_info(k)
+            if {self._piece_of.get(info.id_A()), self._piece_of.get(info.id_B())} == pair:
+                force += np.linalg.norm(info.F_Ac_W().translational())
+        for k in range(results.num_hydroelastic_contacts()):
+            patch = results.hydroelastic_contact_info(k)
             surface = patch.contact_surface()
-            contacts.append((surface.id_M(), surface.id_N(), patch.F_Ac_W().translational()))
-        for a, b, force in contacts:
-            for one, other in ((a, b), (b, a)):
-                k, by = self._piece_of.get(one), self._piece_of.get(other)
-                if k is not None and by is not None and touched[by]:
-                    forces[k] += np.linalg.norm(force)
-        return forces > PRESSED
+            if {self._piece_of.get(surface.id_M()), self._piece_of.get(surface.id_N())} == pair:
+                force += np.linalg.norm(patch.F_Ac_W().translational())
+        return bool(force > PRESSED)
 
 
 def _gaps(a: np.ndarray, b: np.ndarray) -> np.ndarray:
