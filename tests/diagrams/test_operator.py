@@ -144,6 +144,16 @@ def test_a_thing_let_go_too_early_is_pushed_in():
     assert state.backtracks == 0
 
 
+def test_what_may_lie_anywhere_is_laid_side_by_side():
+    goal = DrumGoal(p_WD=PLACE - [0, 0.1, 0], inward=np.array([0, 1.0, 0]), depth=0.4, radius=0.3)
+    things = PICK + np.array([[0.06, 0, 0], [-0.05, 0, 0], [0.0, 0, 0.0]])
+    end, state, _ = load(things, [goal] * 3)
+    left, middle, right = np.sort(end[:, 0])
+    assert right - middle > 0.07
+    assert middle - left > 0.07
+    assert state.backtracks == 0
+
+
 def test_leaves_out_of_reach_alone():
     end, state, _ = load(PICK + np.array([[0, 0, 0], [0.9, 0, 0]]), [MarkGoal(PLACE), MarkGoal(PLACE)])
     assert np.linalg.norm(end[0] - PLACE) < 0.03
