@@ -77,13 +77,12 @@ class Watch:
         if self._grip_height is None:
             self._grip_height = X_WT.translation()[2]
         if self._held is None and X_WT.translation()[2] - self._grip_height > LIFTED_M:
-            for k, item in enumerate(station.scene.items):
-                points = self._points(plant_context, k, X_WT)
-                if np.linalg.norm(points.mean(axis=0)) < IN_HAND_M:
-                    near = np.arange(len(points))
-                    if not isinstance(item, RigidItem):
-                        near = np.argsort(np.linalg.norm(points, axis=1))[:NEAREST]
-                    self._held = k, points[near].mean(axis=0), near
+            clouds = [self._points(plant_context, k, X_WT) for k in range(len(station.scene.items))]
+            k = int(np.argmin([np.linalg.norm(points.mean(axis=0)) for points in clouds]))
+            points = clouds[k]
+            if np.linalg.norm(points.mean(axis=0)) < IN_HAND_M:
+                near = np.argsort(np.linalg.norm(points, axis=1))[:NEAREST]
+                self._held = k, points[near].mean(axis=0), near
         if self._held is not None:
             k, before, near = self._held
             moved = self._points(plant_context, k, X_WT)[near].mean(axis=0) - before
