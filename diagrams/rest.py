@@ -12,7 +12,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
-from pydrake.geometry import CollisionFilterDeclaration, GeometrySet, Role, SceneGraph
+from pydrake.geometry import CollisionFilterDeclaration, GeometryId, GeometrySet, Role, SceneGraph
 from pydrake.multibody.plant import MultibodyPlant
 from pydrake.multibody.tree import ModelInstanceIndex
 from pydrake.systems.framework import Context, EventStatus
@@ -92,7 +92,7 @@ class Rest:
         filters = self._scene_graph.collision_filter_manager(
             self._scene_graph.GetMyMutableContextFromRoot(root_context)
         )
-        shapes = {True: [], False: []}  # type: dict[bool, list[GeometryId]]
+        shapes: dict[bool, list[GeometryId]] = {True: [], False: []}
         for piece, stirs in zip(self._pieces, awake.tolist(), strict=True):
             shapes[stirs] += piece.own if stirs else piece.at_rest
         everything = GeometrySet([*self._others, *self._piece_of])
@@ -120,15 +120,12 @@ class Rest:
         active = touched | moving
         awake = active.copy()
         heights = pieces[:, 2] + pieces[:, 5]
+        reach = NEAR + 2.0 * PERIOD * np.where(np.isfinite(speed), speed, 0.0)
         for i in np.flatnonzero(~active).tolist():
             for j in np.flatnonzero(active).tolist():
-                if not self._near(
-                    context, pieces, i, j, NEAR + (2.0 * PERIOD * speed[j] if np.isfinite(speed[j]) else 0)
-                ):
-                    continue
-                carried = moving[j] and heights[j] < heights[i]
-                stirred = touched[j] and (was_awake[i] or self._pressed(context, i, j))
-                awake[i] |= carried or stirred
+                if self._near(context, pieces, i, j, reach[j]):
+                    carried = moving[j] and heights[j] < heights[i]
+                    awake[i] |= carried or (touched[j] and (was_awake[i] or self._pressed(context, i, j)))
         return awake
 
     def _parts(self, context: Context, pieces: np.ndarray, k: int) -> np.ndarray:
