@@ -1,8 +1,8 @@
 """Whole runs of many seeds, looked at at every control tick: `make bench-world ARGS="--scenario laundry --seeds 20"`.
 
-What a summary samples 20 times a second is here looked at 100 times: how deep anything lies in the surroundings, how
-far what is held slips in the hand, and how fast the run is, in processor time (looking itself is not counted), half
-second by half second. Each run is a process of its own.
+What a summary samples at the control rate is here looked at 100 times a second: how deep anything lies in the
+surroundings, how far what is held slips along the pads, and how fast the run is, in processor time (looking itself is
+not counted), half second by half second. Each run is a process of its own.
 """
 
 import argparse

@@ -2,8 +2,8 @@
 
 A resting piece stays where it is, is met by others as a fixed solid, and costs nothing (a step of three resting soft
 pieces: 3.9 ms awake, 0.3 ms asleep; a sock that falls on a towel: 6.5 ms with the towel awake, 1.9 ms at rest, and it
-comes to lie within 2 mm). It wakes *before* the robot touches it, when what lies below it moves, and when the robot
-presses something against it; what merely comes to lie on it does not wake it.
+comes to lie within 4 mm of where it would). It wakes *before* the robot touches it, when what lies below it moves, and
+when the robot presses something against it; what merely comes to lie on it does not wake it.
 Which pieces rest is a parameter of the plant and of the scene graph in the Context; nothing is kept here.
 """
 

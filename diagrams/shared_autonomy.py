@@ -190,7 +190,7 @@ def _show(builder: DiagramBuilder, station: LioStation, meshcat: Meshcat, record
         builder.Connect(query, view.GetInputPort("query_object"))
 
 
-MEASURED = ("q", "X_BT", "gripper_state", "contact_forces")
+MEASURED = ("q", "X_BT", "gripper_state", "contact_forces", "penetration")
 """Ports of the station that are sampled at the control rate."""
-THINGS = ("item_poses", "item_bounds", "item_speeds", "penetration")
+THINGS = ("item_poses", "item_bounds", "item_speeds")
 """Ports of the station that are looked at 20 times a second."""
