@@ -1,4 +1,4 @@
-"""Whole runs of many seeds, looked at at every control tick: `make bench-world ARGS="--scenario laundry --seeds 20"`.
+"""Whole runs of many seeds, looked at every 10 ms: `make bench-world ARGS="--scenario laundry --seeds 20"`.
 
 What a summary samples at the control rate is here looked at 100 times a second: how deep anything lies in the
 surroundings, how far what is held slips along the pads, and how fast the run is, in processor time (looking itself is

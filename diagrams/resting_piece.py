@@ -11,14 +11,13 @@ from dataclasses import dataclass
 from typing import Protocol
 
 import numpy as np
-from pydrake.common import MemoryFile
-from pydrake.geometry import GeometryId, InMemoryMesh, Mesh, SceneGraph
+from pydrake.geometry import GeometryId, SceneGraph
 from pydrake.math import RigidTransform
 from pydrake.multibody.plant import MultibodyPlant
 from pydrake.systems.framework import Context
 
 from diagrams.scene import RigidItem
-from diagrams.soft_items import SoftItem, soft_positions, soft_velocities
+from diagrams.soft_items import SoftItem, drake_mesh, soft_positions, soft_velocities
 from diagrams.soft_meshes import TetMesh
 
 
@@ -90,8 +89,7 @@ class SoftPiece:
         context = self.plant.GetMyMutableContextFromRoot(root)
         self.plant.deformable_model().Disable(self.item.body_id, context)
         nodes = soft_positions(self.plant, context, self.item)
-        text = TetMesh(nodes, self.item.shape.mesh.tetrahedra).to_vtk()
-        cast = Mesh(InMemoryMesh(mesh_file=MemoryFile(text, ".vtk", f"{self.item.name}_cast.vtk")))
+        cast = drake_mesh(TetMesh(nodes, self.item.shape.mesh.tetrahedra), f"{self.item.name}_cast")
         geometry = self.scene_graph.GetMyMutableContextFromRoot(root)
         self.scene_graph.ChangeShape(geometry, self.plant.get_source_id(), self.item.cast_id, cast, RigidTransform())
 

@@ -33,6 +33,7 @@ from pydrake.multibody.plant import CoulombFriction, MultibodyPlant
 from pydrake.multibody.tree import DeformableBodyId
 from pydrake.systems.framework import Context
 
+from diagrams.soft_meshes import TetMesh
 from diagrams.soft_render import write_render_mesh
 from diagrams.soft_shapes import SoftShape
 
@@ -103,8 +104,7 @@ def add_soft_item(
     config.set_mass_damping_coefficient(material.mass_damping)
     config.set_mass_density(shape.density())
     config.set_material_model(_MODELS[material.model])
-    mesh = Mesh(InMemoryMesh(mesh_file=MemoryFile(shape.mesh.to_vtk(), ".vtk", f"{name}.vtk")))
-    geometry = GeometryInstance(X_WP, mesh, name)
+    geometry = GeometryInstance(X_WP, drake_mesh(shape.mesh, name), name)
     properties = ProximityProperties()
     AddContactMaterial(properties=properties, friction=CoulombFriction(material.friction, material.friction))
     geometry.set_proximity_properties(properties)
@@ -136,6 +136,11 @@ CAST_RADIUS = 0.03
 of what cloth meets (`diagrams.soft_contact`) is that of the cast too."""
 CAST_MODULUS = 1e6
 """[Pa]; set anew with the gradient of the surroundings."""
+
+
+def drake_mesh(mesh: TetMesh, name: str) -> Mesh:
+    """A solid of tetrahedra as Drake takes it, without a file."""
+    return Mesh(InMemoryMesh(mesh_file=MemoryFile(mesh.to_vtk(), ".vtk", f"{name}.vtk")))
 
 
 def soft_positions(plant: MultibodyPlant, context: Context, item: SoftItem) -> np.ndarray:

@@ -39,7 +39,7 @@ def simulate(
     duration: float,
     rate: float = 0.0,
     report: Callable[[Progress], None] = lambda progress: None,
-    watch: Callable[[Context], None] | None = None,
+    watch: Callable[[Context], None] = lambda context: None,
 ) -> RunResult:
     """Simulate until the task is done, given up, interrupted or out of time.
 
@@ -68,11 +68,10 @@ def simulate(
 
     def rest_and_watch(root_context: Context) -> EventStatus:
         status = rest(root_context)
-        if watch is not None:
-            watch(root_context)
+        watch(root_context)
         return status
 
-    simulator.set_monitor(rest if watch is None else rest_and_watch)
+    simulator.set_monitor(rest_and_watch)
     root = simulator.get_context()
     monitor_context = system.monitor.GetMyContextFromRoot(root)
     interrupted = threading.Event()
