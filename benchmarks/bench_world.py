@@ -30,7 +30,6 @@ TICK_S = 0.01
 HALF_S = 0.5
 LIFTED_M = 0.10
 """Rise after which a thing hangs in the hand as it will be carried."""
-IN_HAND_M = 0.16
 NEAREST = 5
 """Nodes of cloth, those next to the TCP, whose mean tells the slip."""
 
@@ -42,7 +41,7 @@ class Watch:
         self._system = system
         self._next_tick = self._next_half = 0.0
         self._spent, self._since = 0.0, time.process_time()
-        self._grip_height: float | None = None
+        self._at_grip: tuple[float, list[float]] | None = None
         self._held: tuple[int, np.ndarray, np.ndarray] | None = None
         self.penetration: list[float] = []
         """[m], at every tick."""
@@ -72,15 +71,18 @@ class Watch:
         plant_context = plant.GetMyContextFromRoot(root)
         X_WT = plant.EvalBodyPoseInWorld(plant_context, plant.GetBodyByName("tcp", station.scene.lio))
         if not closed:
-            self._grip_height = self._held = None
+            self._at_grip = self._held = None
             return
-        if self._grip_height is None:
-            self._grip_height = X_WT.translation()[2]
-        if self._held is None and X_WT.translation()[2] - self._grip_height > LIFTED_M:
-            clouds = [self._points(plant_context, k, X_WT) for k in range(len(station.scene.items))]
-            k = int(np.argmin([np.linalg.norm(points.mean(axis=0)) for points in clouds]))
-            points = clouds[k]
-            if np.linalg.norm(points.mean(axis=0)) < IN_HAND_M:
+        height = float(X_WT.translation()[2])
+        clouds = [self._points(plant_context, k, X_WT) for k in range(len(station.scene.items))]
+        heights = [float(X_WT.multiply(points.mean(axis=0))[2]) for points in clouds]
+        if self._at_grip is None:
+            self._at_grip = height, heights
+        if self._held is None and height - self._at_grip[0] > LIFTED_M:
+            risen = np.subtract(heights, self._at_grip[1])
+            k = int(np.argmax(risen))
+            if risen[k] > LIFTED_M / 2:
+                points = clouds[k]
                 near = np.argsort(np.linalg.norm(points, axis=1))[:NEAREST]
                 self._held = k, points[near].mean(axis=0), near
         if self._held is not None:

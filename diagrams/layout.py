@@ -5,10 +5,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+from pydrake.math import RigidTransform, RollPitchYaw
 
 from canal.errors import InputError
 from diagrams.goals import DrumGoal, Goal, MarkGoal
-from diagrams.scenario import Item, Region, Scenario
+from diagrams.scenario import Item, Region, Scenario, Thing
 
 TRIES = 2000
 LAYOUT_STREAM = 5
@@ -21,6 +22,11 @@ class Spot:
 
     position: np.ndarray
     yaw: float
+
+
+def yaw_pose(position: list[float] | np.ndarray, yaw: float) -> RigidTransform:
+    """A pose that is upright: a position [m] and a turn about z [rad]."""
+    return RigidTransform(RollPitchYaw(0, 0, yaw), np.asarray(position, dtype=float))
 
 
 def draw_layout(scenario: Scenario, seed: int) -> tuple[list[Spot], list[Spot | None]]:
@@ -37,21 +43,25 @@ def draw_layout(scenario: Scenario, seed: int) -> tuple[list[Spot], list[Spot | 
         region, key = item.start, "start"
         if item.kind == "soft" and item.soft_start is not None:
             region, key = item.soft_start, "soft_start"
-        starts.append(_draw(rng, item, region, starts, scenario.item_spacing, key))
+        starts.append(_draw(rng, scenario, item, region, starts, key))
     for item in scenario.items:
         if item.goal is None:
             goals.append(None)
             continue
-        marks.append(_draw(rng, item, item.goal, marks, scenario.item_spacing, "goal"))
+        marks.append(_draw(rng, scenario, item, item.goal, marks, "goal"))
         goals.append(marks[-1])
     return starts, goals
 
 
-def _draw(rng: np.random.Generator, item: Item, region: Region, others: list[Spot], spacing: float, what: str) -> Spot:
+def _draw(
+    rng: np.random.Generator, scenario: Scenario, item: Item, region: Region, others: list[Spot], what: str
+) -> Spot:
+    on = next((thing for thing in scenario.things if thing.name == region.frame), Thing())
+    X_WT, spacing = yaw_pose(on.position, np.deg2rad(on.yaw_deg)), scenario.item_spacing
     for _ in range(TRIES):
         shift = rng.uniform(-1, 1, 2) * region.half_widths
-        yaw = np.deg2rad(rng.uniform(region.yaw_deg[0], region.yaw_deg[1]))
-        position = np.asarray(region.center, dtype=float) + [*shift, 0.0]
+        yaw = np.deg2rad(on.yaw_deg + rng.uniform(region.yaw_deg[0], region.yaw_deg[1]))
+        position = X_WT.multiply(np.asarray(region.center, dtype=float) + [*shift, 0.0])
         if all(np.linalg.norm(position - other.position) >= spacing for other in others):
             return Spot(position, float(yaw))
     raise InputError(

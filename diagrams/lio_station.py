@@ -60,7 +60,8 @@ class LioStation(Diagram):
         """
         super().__init__()
         builder = DiagramBuilder()
-        plant, scene_graph = AddMultibodyPlant(plant_config(scenario.contact), builder)
+        soft = any(item.kind == "soft" for item in scenario.items)
+        plant, scene_graph = AddMultibodyPlant(plant_config(scenario.contact.for_items(soft)), builder)
         self.plant: MultibodyPlant = plant
         self.scene_graph: SceneGraph = scene_graph
         self.scene: Scene = add_scene(plant=plant, scene_graph=scene_graph, scenario=scenario, seed=seed, filmed=filmed)
@@ -126,7 +127,7 @@ class LioStation(Diagram):
 
 
 def plant_config(contact: Contact) -> MultibodyPlantConfig:
-    """How Drake is to compute contact."""
+    """How Drake is to compute contact; time step and approximation are given (`Contact.for_items`)."""
     return MultibodyPlantConfig(
         time_step=contact.time_step,
         discrete_contact_approximation=contact.approximation,

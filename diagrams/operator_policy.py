@@ -152,14 +152,17 @@ class OperatorPolicy:
             state.mode = Mode.LEAVE
 
     def _beside(self, side: float) -> np.ndarray:
-        """The middle of the last disk, or a point near its rim, level with it, to one side or the other. Shape (3,)."""
+        """A point of the last disk: near its rim, level with the middle, at one side (±1), or half way up (0). (3,)."""
         end = self.canal.n_disks - 1.0
         x, y = self.canal.axes(end)
         level = math.atan2(-x[2], y[2])  # φ of y_z x - x_z y, which is horizontal
-        return self.canal.point(end, abs(side) * self.options.lay_beside, level if side > 0 else level + math.pi)
+        if side == 0:
+            up = math.atan2(y[2], x[2])
+            return self.canal.point(end, self.options.lay_beside / 2, up)
+        return self.canal.point(end, self.options.lay_beside, level if side > 0 else level + math.pi)
 
     def _room(self, sight: Sight, thing: int) -> float:
-        """Where a thing that may lie anywhere has most room beside those that are there: at a side first."""
+        """Where a thing that may lie anywhere has most room: at a side first, above the others where both are taken."""
         there = [
             p
             for i, p in enumerate(sight.positions)

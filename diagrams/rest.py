@@ -19,7 +19,7 @@ from pydrake.systems.framework import Context, EventStatus
 
 from diagrams.resting_piece import STILL, Piece, RigidPiece, SoftPiece
 from diagrams.scene import RigidItem
-from diagrams.shape_bounds import BoxBounds, extent
+from diagrams.shape_bounds import BodyBoxes, Boxes, extent
 from diagrams.soft_items import SoftItem, soft_positions
 
 PERIOD = 0.02  # [s]
@@ -52,21 +52,23 @@ class Rest:
         of_pieces = {g for piece in self._pieces for g in (*piece.own, *piece.at_rest)}
         self._others = [g for g in inspector.GetAllGeometryIds(Role.kProximity) if g not in of_pieces]
         self._piece_of = {g: k for k, piece in enumerate(self._pieces) for g in (*piece.own, *piece.at_rest)}
-        # Of links and rigid pieces at once, since one body at a time took a fifth of a run.
         links = {}
         for index in plant.GetBodyIndices(robot):
             body = plant.get_body(index)
+            if plant.IsAnchored(body):
+                continue
             shapes = [extent(inspector, g) for g in plant.GetCollisionGeometriesForBody(body)]
             extents = [shape for shape in shapes if shape is not None]
             if extents:
                 links[body] = extents
+        rigid_items = [item for item in items if isinstance(item, RigidItem)]
+        # Of links and rigid pieces at once, since one body at a time took a fifth of a run.
         self._n_links = len(links)
         self._rigid = [k for k, item in enumerate(items) if isinstance(item, RigidItem)]
         self._soft = [(k, item) for k, item in enumerate(items) if isinstance(item, SoftItem)]
         self._triangles = {k: (item, item.shape.mesh.boundary()) for k, item in self._soft}
-        rigid_items = [item for item in items if isinstance(item, RigidItem)]
         self._bodies = [*links, *(item.body for item in rigid_items)]
-        self._bounds = BoxBounds([*links.values(), *(item.extents for item in rigid_items)])
+        self._boxes = BodyBoxes([*links.values(), *(item.extents for item in rigid_items)])
 
     def __call__(self, root_context: Context) -> EventStatus:
         """Look, if it is time to; `root_context` belongs to the diagram that the plant is in."""
@@ -104,27 +106,26 @@ class Rest:
 
     def awake(self, context: Context) -> np.ndarray:
         """Which pieces are to be simulated, given the plant's context. Shape (n,), bool."""
-        bounds = self._bounds([self._plant.EvalBodyPoseInWorld(context, body) for body in self._bodies])
-        links, pieces = bounds[: self._n_links], np.empty((len(self._pieces), 6))
-        pieces[self._rigid] = bounds[self._n_links :]
+        boxes = self._boxes([self._plant.EvalBodyPoseInWorld(context, body) for body in self._bodies])
+        links, pieces = boxes[: self._n_links], np.empty((len(self._pieces), 6))
+        pieces[self._rigid] = boxes[self._n_links :].bounds()
         for k, item in self._soft:
             nodes = soft_positions(self._plant, context, item)
             pieces[k, :3], pieces[k, 3:] = nodes.min(axis=0), nodes.max(axis=0)
         touched = self._touched(context, links, pieces)
-        was_awake = np.array([piece.is_awake(context) for piece in self._pieces])
-        if not (touched | was_awake).any():
-            return touched
-        sizes = np.linalg.norm(pieces[:, 3:] - pieces[:, :3], axis=1) / 2
-        speed = np.array([p.speed(context, size) for p, size in zip(self._pieces, sizes, strict=True)])
-        moving = speed > STILL
-        active = touched | moving
-        awake = active.copy()
-        heights = pieces[:, 2] + pieces[:, 5]
-        reach = NEAR + 2.0 * PERIOD * np.where(np.isfinite(speed), speed, 0.0)
-        for i in np.flatnonzero(~active).tolist():
-            for j in np.flatnonzero(active).tolist():
-                if self._near(context, pieces, i, j, reach[j]):
-                    carried = moving[j] and heights[j] < heights[i]
+        was_awake = [piece.is_awake(context) for piece in self._pieces]
+        if not any(touched) and not any(was_awake):
+            return np.zeros(len(self._pieces), dtype=bool)
+        sizes = (np.linalg.norm(pieces[:, 3:] - pieces[:, :3], axis=1) / 2).tolist()
+        speeds = [p.speed(context, size) for p, size in zip(self._pieces, sizes, strict=True)]
+        active = [near or speed > STILL for near, speed in zip(touched, speeds, strict=True)]
+        awake = np.array(active)
+        heights, gaps = (pieces[:, 2] + pieces[:, 5]).tolist(), _gaps(pieces, pieces).tolist()
+        for j in (j for j, stirs in enumerate(active) if stirs):
+            reach = NEAR + (2.0 * PERIOD * speeds[j] if np.isfinite(speeds[j]) else 0.0)
+            for i in (i for i, stirs in enumerate(active) if not stirs):
+                if gaps[i][j] < reach and self._near(context, pieces, i, j, reach):
+                    carried = speeds[j] > STILL and heights[j] < heights[i]
                     awake[i] |= carried or (touched[j] and (was_awake[i] or self._pressed(context, i, j)))
         return awake
 
@@ -136,17 +137,18 @@ class Rest:
         corners = soft_positions(self._plant, context, item)[triangles]
         return np.hstack([corners.min(axis=1), corners.max(axis=1)])
 
-    def _touched(self, context: Context, links: np.ndarray, pieces: np.ndarray) -> np.ndarray:
-        """Which pieces the robot is near to. Shape (n,), bool."""
-        touched = (_gaps(pieces, links) < ROBOT_NEAR).any(axis=1)
-        for k in np.flatnonzero(touched).tolist():
-            touched[k] = (_gaps(self._parts(context, pieces, k), links) < ROBOT_NEAR).any()
+    def _touched(self, context: Context, links: Boxes, pieces: np.ndarray) -> list[bool]:
+        """Which pieces the robot is near to."""
+        touched = (links.gaps(pieces) < ROBOT_NEAR).any(axis=1).tolist()
+        for k, _ in self._soft:
+            if touched[k]:
+                touched[k] = bool((links.gaps(self._parts(context, pieces, k)) < ROBOT_NEAR).any())
         return touched
 
     def _near(self, context: Context, pieces: np.ndarray, i: int, j: int, reach: float) -> bool:
-        """Whether pieces i and j are nearer to each other than `reach` [m]."""
-        if _gaps(pieces[i : i + 1], pieces[j : j + 1]).item() >= reach:
-            return False
+        """Whether pieces i and j, whose bounds are, are nearer to each other than `reach` [m]."""
+        if i not in self._triangles and j not in self._triangles:
+            return True
         return bool((_gaps(self._parts(context, pieces, i), self._parts(context, pieces, j)) < reach).any())
 
     def _pressed(self, context: Context, i: int, j: int) -> bool:

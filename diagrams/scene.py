@@ -6,13 +6,13 @@ from dataclasses import dataclass, field
 
 import numpy as np
 from pydrake.geometry import Cylinder, GeometryId, SceneGraph
-from pydrake.math import RigidTransform, RollPitchYaw
+from pydrake.math import RigidTransform
 from pydrake.multibody.parsing import Parser
 from pydrake.multibody.plant import MultibodyPlant
 from pydrake.multibody.tree import ModelInstanceIndex, RigidBody
 
 from canal.errors import InputError
-from diagrams.layout import Spot, draw_layout
+from diagrams.layout import Spot, draw_layout, yaw_pose
 from diagrams.scenario import Item, Robot, Scenario, Thing
 from diagrams.shape_bounds import BodyBounds, Extent, extent
 from diagrams.soft_items import SoftItem, add_soft_item
@@ -61,11 +61,6 @@ class Scene:
     def soft_items(self) -> list[SoftItem]:
         """Those that are deformable."""
         return [item for item in self.items if isinstance(item, SoftItem)]
-
-
-def yaw_pose(position: list[float] | np.ndarray, yaw: float) -> RigidTransform:
-    """A pose that is upright: a position [m] and a turn about z [rad]."""
-    return RigidTransform(RollPitchYaw(0, 0, yaw), np.asarray(position, dtype=float))
 
 
 def add_lio(plant: MultibodyPlant, robot: Robot) -> tuple[ModelInstanceIndex, RigidTransform]:

@@ -85,11 +85,43 @@ class BodyBounds:
         return np.hstack([np.minimum.reduceat(low, self._body_starts), np.maximum.reduceat(high, self._body_starts)])
 
 
-class BoxBounds:
-    """Bounds of many bodies at once, looser and five times quicker than `BodyBounds`: of each a box along its own axes.
+@dataclass(frozen=True)
+class Boxes:
+    """Boxes that are turned with their bodies, in W."""
 
-    A box with middle c and half edges h reaches along axis i of W to (R c + p)_i ± (|R| h)_i.
-    """
+    rotations: np.ndarray
+    """Axes of each as columns. Shape (n, 3, 3)."""
+    middles: np.ndarray
+    """[m], shape (n, 3)."""
+    halves: np.ndarray
+    """Half edges [m], shape (n, 3)."""
+    reach: np.ndarray
+    """How far each reaches from its middle along the axes of W [m]. Shape (n, 3)."""
+
+    def __getitem__(self, part: slice) -> Boxes:
+        """Some of them."""
+        return Boxes(self.rotations[part], self.middles[part], self.halves[part], self.reach[part])
+
+    def bounds(self) -> np.ndarray:
+        """(min x, y, z, max x, y, z) in W [m]. Shape (n, 6)."""
+        return np.concatenate((self.middles - self.reach, self.middles + self.reach), axis=1)
+
+    def gaps(self, bounds: np.ndarray) -> np.ndarray:
+        """Lower bound of the distance to axis-aligned `bounds` (m, 6) [m]; negative: they may overlap. Shape (m, n).
+
+        The largest gap along an axis of W or of the box, of the fifteen directions that could part them.
+        """
+        middles, halves = (bounds[:, None, :3] + bounds[:, None, 3:]) / 2, (bounds[:, 3:] - bounds[:, :3]) / 2
+        apart = middles - self.middles
+        along_world = np.abs(apart) - halves[:, None] - self.reach
+        # As matrix products, over the boxes: (n, m, 3), then back.
+        along_box = np.abs(apart.transpose(1, 0, 2) @ self.rotations) - halves @ np.abs(self.rotations)
+        along_box = along_box.transpose(1, 0, 2) - self.halves
+        return np.maximum(along_world, along_box).max(axis=2)
+
+
+class BodyBoxes:
+    """Around each of many bodies a box along its own axes: looser than `BodyBounds`, and five times quicker."""
 
     def __init__(self, bodies: Sequence[Sequence[Extent]]) -> None:
         """Box the shapes of each of n bodies, one or more a body."""
@@ -98,13 +130,17 @@ class BoxBounds:
             swells = [np.linalg.norm(shape.swell, axis=0) for shape in shapes]
             low.append(np.min([s.points.min(axis=0) - w for s, w in zip(shapes, swells, strict=True)], axis=0))
             high.append(np.max([s.points.max(axis=0) + w for s, w in zip(shapes, swells, strict=True)], axis=0))
-        self._middles = (np.array(low) + np.array(high)) / 2.0
+        self._middles = (np.array(low) + np.array(high))[:, :, None] / 2.0
         self._halves = (np.array(high) - np.array(low)) / 2.0
 
-    def __call__(self, X_WP: Sequence[RigidTransform]) -> np.ndarray:
-        """Of bodies in these poses: (min x, y, z, max x, y, z) in W [m]. Shape (n, 6)."""
+    def __call__(self, X_WP: Sequence[RigidTransform]) -> Boxes:
+        """Of bodies in these poses."""
         poses = np.array([X.GetAsMatrix34() for X in X_WP])
         rotations = poses[:, :, :3]
-        middles = np.einsum("nij,nj->ni", rotations, self._middles) + poses[:, :, 3]
-        halves = np.einsum("nij,nj->ni", np.abs(rotations), self._halves)
-        return np.hstack([middles - halves, middles + halves])
+        # A box with middle c and half edges h reaches along the axes of W by |R| h.
+        return Boxes(
+            rotations,
+            (rotations @ self._middles)[:, :, 0] + poses[:, :, 3],
+            self._halves,
+            (np.abs(rotations) @ self._halves[:, :, None])[:, :, 0],
+        )

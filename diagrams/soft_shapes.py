@@ -224,7 +224,7 @@ def _towel(color: Rgb | None, segments: int) -> SoftShape:
     stripe, fringe = _mix(base, (0.35, 0.10, 0.05), 0.75), _mix(base, (1.0, 1.0, 1.0), 0.7)
     tube = Tube.bent(
         np.zeros(3),
-        0.25,
+        0.22,
         lambda s: 0.15 * np.sin(2.0 * np.pi * s),
         lambda s: 0.046 - 0.006 * np.sin(np.pi * s) ** 2,
         lambda s: 0.039 - 0.004 * np.sin(np.pi * s) ** 2,
@@ -247,7 +247,7 @@ def _towel(color: Rgb | None, segments: int) -> SoftShape:
 
     builder = TetBuilder()
     builder.add_tube(tube, segments or 5)
-    return _finish("towel", builder.mesh(), [_Skin(tube, 30, 24, fold, paint, layers)], mass=0.30)
+    return _finish("towel", builder.mesh(), [_Skin(tube, 30, 24, fold, paint, layers)], mass=0.26)
 
 
 SOFT_KINDS: dict[str, Callable[[Rgb | None, int], SoftShape]] = {"sock": _sock, "tshirt": _tshirt, "towel": _towel}

@@ -13,7 +13,7 @@ from models import SCENARIOS
 
 NAMED = [
     "laundry",
-    "laundry-askew",
+    "laundry-straight",
     "laundry-crowded",
     "laundry-hanging",
     "laundry-moved",

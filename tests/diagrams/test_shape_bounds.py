@@ -15,7 +15,7 @@ from pydrake.geometry import (
 from pydrake.math import RigidTransform, RotationMatrix
 from scipy.spatial.transform import Rotation
 
-from diagrams.shape_bounds import BodyBounds, BoxBounds, Extent, extent
+from diagrams.shape_bounds import BodyBounds, BodyBoxes, Extent, extent
 
 
 def pose(seed):
@@ -68,8 +68,35 @@ def test_quick_bounds_hold_the_tight_ones(seed):
     rng = np.random.default_rng(seed)
     bodies = [[Extent(rng.normal(size=(7, 3)), 0.3 * rng.normal(size=(3, 3))) for _ in range(2)] for _ in range(4)]
     poses = [pose(k) for k in range(4)]
-    tight, quick = BodyBounds(bodies)(poses), BoxBounds(bodies)(poses)
+    tight, quick = BodyBounds(bodies)(poses), BodyBoxes(bodies)(poses).bounds()
     assert np.all(quick[:, :3] <= tight[:, :3] + 1e-12)
     assert np.all(quick[:, 3:] >= tight[:, 3:] - 1e-12)
     upright = [RigidTransform([k, 0.0, 0.0]) for k in range(4)]
-    assert BoxBounds([b[:1] for b in bodies])(upright) == pytest.approx(BodyBounds([b[:1] for b in bodies])(upright))
+    of_one = [b[:1] for b in bodies]
+    assert BodyBoxes(of_one)(upright).bounds() == pytest.approx(BodyBounds(of_one)(upright))
+
+
+@pytest.mark.parametrize("seed", range(20))
+def test_gaps_of_turned_boxes_are_at_most_the_distance(seed):
+    rng = np.random.default_rng(seed)
+    corners = np.array([[x, y, z] for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)])
+    halves = rng.uniform(0.05, 0.5, (2, 3))
+    poses = [pose(seed), pose(seed + 50)]
+    low = rng.uniform(-2, 2, (3, 3))
+    bounds = np.hstack([low, low + rng.uniform(0, 1, (3, 3))])
+    gaps = BodyBoxes([[Extent(corners * h, np.zeros((3, 3)))] for h in halves])(poses).gaps(bounds)
+    inside = rng.uniform(-1, 1, (4000, 3))
+    for n, (X, h) in enumerate(zip(poses, halves, strict=True)):
+        points = X.multiply((inside * h).T).T
+        for m, b in enumerate(bounds):
+            distance = np.linalg.norm(np.maximum(0, np.maximum(b[:3] - points, points - b[3:])), axis=1).min()
+            assert gaps[m, n] <= distance + 1e-12
+            # Two boxes that only an edge of each parts are nearer by the sine of the angle than their faces tell.
+            assert distance < 0.1 or gaps[m, n] > 0.4 * distance - 0.1
+
+
+def test_a_turned_box_is_apart_from_what_only_its_bounds_reach():
+    turned = RigidTransform(RotationMatrix.MakeZRotation(np.pi / 4), [0, 0, 0])
+    (boxes,) = [BodyBoxes([[Extent(np.array([[-1.0, -0.1, -0.1], [1.0, 0.1, 0.1]]), np.zeros((3, 3)))]])([turned])]
+    beside = np.array([[0.4, -0.6, -0.1, 0.6, -0.4, 0.1]])
+    assert boxes.gaps(beside).item() == pytest.approx(np.sqrt(0.5) - 0.1 - 0.1 * np.sqrt(2))

@@ -32,7 +32,7 @@ def test_a_filmed_piece_shows_more_than_one_colour():
         station = LioStation.AddToBuilder(
             builder=builder, scenario=with_items(load_scenario("laundry"), "soft"), filmed=filmed
         )
-        x, y, z = (0.45, 0.15, 0.33)  # the sock
+        x, y, z = station.X_WB.multiply([0.475, 0.15, 0.33])  # the sock
         camera = add_camera(
             builder=builder, station=station, X=look_at((x, y - 0.05, z + 0.2), (x, y, z)), size=(64, 48), fov_deg=30
         )

@@ -1,4 +1,4 @@
-"""Grasps are friction: closed around a thing, the pads carry it, and it slips less than 3 mm (DRAKE_NOTES, 5 ms)."""
+"""Grasps are friction: closed around a thing, the pads carry it, and it slips less than 3 mm."""
 
 import numpy as np
 import pytest
@@ -8,7 +8,7 @@ from diagrams.ik_solver import IkSolver
 from diagrams.lio_arm import TCP_FRAME, make_arm_plant
 from diagrams.lio_station import LioStation
 from diagrams.pose_vector import vector_to_pose
-from diagrams.scenario import load_scenario
+from diagrams.scenario import Robot, load_scenario
 
 # R_BT with x_T straight down; at azimuth 0 the fingers open along y_B.
 DOWN = np.array([0.0, 0.7071067811865476, 0.0, -0.7071067811865476])
@@ -30,9 +30,10 @@ def test_carried_without_slip(name):
     (item,) = (i for i in scenario.items if i.name == name)
     # One thing on a bare table before the robot, its long side across the fingers.
     table = next(t for t in scenario.things if t.name == "table")
-    table.model, table.position = "laundry_table", [0.46, 0.0, 0.0]
+    table.model, table.position, table.yaw_deg, scenario.robot = "laundry_table", [0.46, 0.0, 0.0], 0.0, Robot()
     scenario.things, scenario.items = [table], [item]
     item.kind = "rigid"
+    item.start.frame = ""
     item.start.center, item.start.half_widths, item.start.yaw_deg = [0.45, 0.0, 0.30], [0.0, 0.0], [0.0, 0.0]
 
     solver = IkSolver(make_arm_plant(), TCP_FRAME, scenario.ik)

@@ -2,8 +2,10 @@
 
 import numpy as np
 import pytest
+from scipy.spatial.transform import Rotation
 
 from canal.demonstration import load_demonstration
+from diagrams.scenario import load_scenario
 from models import MODELS
 from models.make_demonstrations import HANDS, LAUNDRY, RELOCATION, demonstrate
 
@@ -42,14 +44,16 @@ def test_hands_part_at_pick_and_meet_on_the_way(task):
 
 
 def test_laundry_enters_the_door_straight_near_its_middle_and_goes_down():
-    door = 0.79
+    scenario = load_scenario("laundry")
+    turn, at = Rotation.from_euler("z", scenario.robot.yaw_deg, degrees=True), np.array(scenario.robot.position)
+    door = np.array(scenario.drum.center)
     for k in (1, 2):
         demo = load_demonstration(MODELS / "demonstrations" / f"laundry_{k}.npz")
-        inside = demo.position[:, 1] > door - 0.02
+        position = turn.apply(demo.position) + at - door  # y into the machine
+        inside = position[:, 1] > -0.02
         assert inside.any()
-        w, x, y, z = demo.orientation[inside].T
-        forward = np.column_stack([1 - 2 * (y * y + z * z), 2 * (x * y + w * z), 2 * (x * z - w * y)])  # x_T in B
-        across = demo.position[inside] + forward * ((door - demo.position[inside, 1]) / forward[:, 1])[:, None]
-        assert np.hypot(across[:, 0], across[:, 2] - 0.55).max() < 0.095  # the hand is 0.10 wide, the door 0.34
+        forward = (turn * Rotation.from_quat(demo.orientation[inside], scalar_first=True)).apply([1.0, 0.0, 0.0])
+        across = position[inside] - forward * (position[inside, 1] / forward[:, 1])[:, None]
+        assert np.hypot(across[:, 0], across[:, 2]).max() < 0.095  # the hand is 0.10 wide, the door 0.34
         assert np.hypot(forward[:, 1], forward[:, 2]).min() > np.cos(np.deg2rad(10))
         assert demo.position[-1, 2] < 0.50
