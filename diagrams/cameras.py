@@ -42,7 +42,7 @@ COLORS = 128
 
 @dataclass(frozen=True)
 class View:
-    """Where a camera stands in W, and what it looks at [m]."""
+    """Where a camera stands in the frame of the robot's base, and what it looks at [m]."""
 
     eye: tuple[float, float, float]
     target: tuple[float, float, float]
@@ -164,9 +164,8 @@ class VideoRecorder(LeafSystem):
         """Add the room's camera, the gripper's, and the recorder; call `save` after the run."""
         view = VIEWS[station.scene.scenario.task]
         recorder = builder.AddNamedSystem("video_recorder", VideoRecorder(path))
-        room = add_camera(
-            builder=builder, station=station, X=look_at(view.eye, view.target), size=SIZE, fov_deg=view.fov_deg
-        )
+        X = station.X_WB.multiply(look_at(view.eye, view.target))
+        room = add_camera(builder=builder, station=station, X=X, size=SIZE, fov_deg=view.fov_deg)
         hand = add_camera(
             builder=builder, station=station, X=X_GRIPPER_CAMERA, size=INSET, fov_deg=70.0, body="lio_gripper"
         )

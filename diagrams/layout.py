@@ -9,7 +9,7 @@ from pydrake.math import RigidTransform, RollPitchYaw
 
 from canal.errors import InputError
 from diagrams.goals import DrumGoal, Goal, MarkGoal
-from diagrams.scenario import Item, Region, Scenario, Thing
+from diagrams.scenario import Item, Region, Robot, Scenario, Thing
 
 TRIES = 2000
 LAYOUT_STREAM = 5
@@ -27,6 +27,11 @@ class Spot:
 def yaw_pose(position: list[float] | np.ndarray, yaw: float) -> RigidTransform:
     """A pose that is upright: a position [m] and a turn about z [rad]."""
     return RigidTransform(RollPitchYaw(0, 0, yaw), np.asarray(position, dtype=float))
+
+
+def base_pose(robot: Robot) -> RigidTransform:
+    """X_WB: where the robot's base stands."""
+    return yaw_pose(robot.position, np.deg2rad(robot.yaw_deg))
 
 
 def draw_layout(scenario: Scenario, seed: int) -> tuple[list[Spot], list[Spot | None]]:

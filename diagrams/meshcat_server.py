@@ -9,13 +9,14 @@ from typing import NoReturn
 
 import numpy as np
 from pydrake.geometry import Meshcat, MeshcatParams
+from pydrake.math import RigidTransform
 
 from canal.errors import InputError
 
 CAMERA = (2.4, -1.5, 1.9)
-"""[m] Where the eye stands, in the world: in front of the robot, to its right, taller than the machine."""
+"""[m] Where the eye stands, in the robot's base frame B: in front of it, to its right, taller than the machine."""
 TARGET = (0.12, 0.23, 0.43)
-"""[m] What the eye looks at, in the world: the middle of the work space."""
+"""[m] What the eye looks at, in B: the middle of the work space."""
 FIELD_OF_VIEW = 40.0
 """[deg] Vertical; Meshcat's own 75° bends what stands at the edge."""
 
@@ -53,14 +54,19 @@ LOOK: tuple[tuple[str, str, bool | float | list[float]], ...] = (
 
 
 def start_meshcat(
-    *, port: int | None = None, camera: Sequence[float] = CAMERA, target: Sequence[float] = TARGET
+    *,
+    port: int | None = None,
+    X_WB: RigidTransform | None = None,
+    camera: Sequence[float] = CAMERA,
+    target: Sequence[float] = TARGET,
 ) -> Meshcat:
     """Serve a Meshcat page on localhost, for browsers on this machine.
 
     Args:
         port: TCP port; None takes the first free one from 7000 on, 0 any free one.
-        camera: where the eye stands, in the world [m]. Shape (3,).
-        target: what it looks at, in the world [m]. Shape (3,).
+        X_WB: where the robot's base stands; None: at the world's origin.
+        camera: where the eye stands, in B [m]. Shape (3,).
+        target: what it looks at, in B [m]. Shape (3,).
 
     Returns:
         The Meshcat; `web_url()` is its address. Only the thread that made it may call it.
@@ -89,7 +95,10 @@ def start_meshcat(
         remedy = "give a free one with --port, or end the program that listens there"
         raise InputError(f"{which} taken: {remedy}") from error
     meshcat.SetCamera(Meshcat.PerspectiveCamera(fov=FIELD_OF_VIEW, aspect=1.6))
-    meshcat.SetCameraPose(np.asarray(camera, dtype=float), np.asarray(target, dtype=float))
+    X_WB = RigidTransform() if X_WB is None else X_WB
+    meshcat.SetCameraPose(
+        X_WB.multiply(np.asarray(camera, dtype=float)), X_WB.multiply(np.asarray(target, dtype=float))
+    )
     return meshcat
 
 

@@ -12,7 +12,7 @@ from pydrake.multibody.plant import MultibodyPlant
 from pydrake.multibody.tree import ModelInstanceIndex, RigidBody
 
 from canal.errors import InputError
-from diagrams.layout import Spot, draw_layout, yaw_pose
+from diagrams.layout import Spot, base_pose, draw_layout, yaw_pose
 from diagrams.scenario import Item, Robot, Scenario, Thing
 from diagrams.shape_bounds import BodyBounds, Extent, extent
 from diagrams.soft_items import SoftItem, add_soft_item
@@ -65,7 +65,7 @@ class Scene:
 
 def add_lio(plant: MultibodyPlant, robot: Robot) -> tuple[ModelInstanceIndex, RigidTransform]:
     """Parse the Lio and weld its base; returns its model and X_WB."""
-    X_WB = yaw_pose(robot.position, np.deg2rad(robot.yaw_deg))
+    X_WB = base_pose(robot)
     (lio,) = Parser(plant).AddModels(str(LIO_URDF))
     plant.WeldFrames(plant.world_frame(), plant.GetFrameByName("lio_base", lio), X_WB)
     return lio, X_WB

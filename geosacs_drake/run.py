@@ -17,6 +17,7 @@ from canal.refinement import SupportPlane
 from canal.retargeting import retarget
 from canal.surface import CanalSurface
 from diagrams.joystick_recording import load_recording
+from diagrams.layout import base_pose
 from diagrams.meshcat_joystick import CONTROLS
 from diagrams.meshcat_recording import Recording
 from diagrams.meshcat_server import leave, start_meshcat
@@ -46,7 +47,9 @@ def run(options: RunOptions, task: str) -> ExitStatus:
     if options.items is not None:
         scenario = with_items(scenario, options.items)
     canal = prepare_canal(scenario, options)
-    meshcat = None if options.headless and options.record is None else start_meshcat(port=options.port)
+    meshcat = None
+    if not options.headless or options.record is not None:
+        meshcat = start_meshcat(port=options.port, X_WB=base_pose(scenario.robot))
     recording = None
     if meshcat is not None and options.record is not None:
         recording = Recording(meshcat, title=scenario.description or scenario.task)

@@ -7,8 +7,8 @@ import pytest
 import yaml
 
 from canal.errors import InputError
-from diagrams.layout import draw_layout
-from diagrams.scenario import load_scenario, shipped_scenarios, with_items
+from diagrams.layout import draw_layout, yaw_pose
+from diagrams.scenario import Contact, load_scenario, shipped_scenarios, with_items
 from models import SCENARIOS
 
 NAMED = [
@@ -45,6 +45,26 @@ def test_layout_is_the_seeds():
     other = draw_layout(scenario, 4)[0][0].position
     assert np.array_equal(*same)
     assert not np.array_equal(same[0], other)
+
+
+def test_what_lies_in_a_basket_goes_where_the_basket_goes():
+    scenario = load_scenario("laundry")
+    basket = next(thing for thing in scenario.things if thing.name == "basket")
+    before = draw_layout(scenario, 3)[0]
+    old = yaw_pose(basket.position, np.deg2rad(basket.yaw_deg))
+    basket.position, basket.yaw_deg = [0.1, 0.2, 0.5], 70.0
+    new = yaw_pose(basket.position, np.deg2rad(basket.yaw_deg))
+    for one, two in zip(before, draw_layout(scenario, 3)[0], strict=True):
+        assert new.inverse().multiply(two.position) == pytest.approx(old.inverse().multiply(one.position))
+        assert two.yaw - one.yaw == pytest.approx(np.deg2rad(105.0))
+
+
+def test_contact_suits_what_there_is_unless_told():
+    soft, rigid = (Contact().for_items(soft) for soft in (True, False))
+    assert (soft.time_step, soft.approximation) == (0.005, "lagged")
+    assert (rigid.time_step, rigid.approximation) == (0.01, "sap")
+    told = Contact(time_step=0.002, approximation="similar")
+    assert told.for_items(True) == told.for_items(False) == told
 
 
 def test_a_region_too_small_is_refused():
@@ -84,6 +104,10 @@ def test_unknown_name_lists_those_that_ship():
         ({"items": [{"nam": "x"}]}, "items[0].nam is not known"),
         ({"items": [{"name": "a", "model": "towel", "kind": "firm"}]}, "items.a.kind is 'firm'"),
         ({"items": [{"name": "a", "model": "anvil"}]}, "'anvil' does not exist"),
+        (
+            {"items": [{"name": "a", "model": "towel", "start": {"frame": "bucket"}}]},
+            "items.a.start.frame is 'bucket'; use one of floor, table, basket, machine",
+        ),
         ({"robot": {"position": [0, 0]}}, "robot.position is [0.0, 0.0]; give 3 finite numbers"),
         ({"robot": {"position": [0, 0, float("nan")]}}, "give 3 finite numbers"),
         ({"contact": {"time_step": 0.02}}, "contact.time_step is 0.02"),

@@ -37,7 +37,7 @@ def test_a_turn_alone_keeps_the_places(shown):
     assert 2 * np.degrees(np.arccos(np.abs(turned.orientations[-1] @ shown.orientations[-1]))) == pytest.approx(15.0)
 
 
-@pytest.mark.parametrize("name", ["laundry-moved", "laundry-turned"])
+@pytest.mark.parametrize("name", ["laundry-moved", "laundry-straight", "laundry-turned"])
 def test_the_arm_follows_it(name):
     scenario = load_scenario(name)
     canal = prepare_canal(scenario, RunOptions())
