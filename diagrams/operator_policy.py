@@ -152,13 +152,13 @@ class OperatorPolicy:
             state.mode = Mode.LEAVE
 
     def _beside(self, side: float) -> np.ndarray:
-        """A point of the last disk: near its rim, level with the middle, at one side (±1), or half way up (0). (3,)."""
+        """A point of the last disk: near its rim, level with the middle, at one side (±1), or above it (0). (3,)."""
         end = self.canal.n_disks - 1.0
         x, y = self.canal.axes(end)
         level = math.atan2(-x[2], y[2])  # φ of y_z x - x_z y, which is horizontal
         if side == 0:
             up = math.atan2(y[2], x[2])
-            return self.canal.point(end, self.options.lay_beside / 2, up)
+            return self.canal.point(end, self.options.lay_above, up)
         return self.canal.point(end, self.options.lay_beside, level if side > 0 else level + math.pi)
 
     def _room(self, sight: Sight, thing: int) -> float:
