@@ -34,8 +34,10 @@ class OperatorOptions:
     """d at which the person lets go of what may lie anywhere at its goal, on the first try. Below 1 it is a slip of the
     thumb: the thing hangs out, and is to be pushed in."""
     lay_beside: float = 0.9
-    """How far to a side what may lie anywhere is laid where there is room, in radii of the last disk; where both sides
-    are taken, how far up an upright disk, and the less, the more level it is."""
+    """How far to a side what may lie anywhere is laid where there is room, in radii of the last disk."""
+    lay_above: float = 0.66
+    """How far up an upright disk it is laid where both sides are taken, in the same radii; the less, the more level the
+    disk is. Lower, the hand presses on what lies there; higher, what is let go falls deep."""
     judge_at: float = 0.78
     """d below which the gripper is clear of the goal, and the person judges what became of the thing."""
     lift_m: float = 0.10

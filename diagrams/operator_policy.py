@@ -157,7 +157,7 @@ class OperatorPolicy:
         x, y = self.canal.axes(end)
         level = math.atan2(-x[2], y[2])  # φ of y_z x - x_z y, which is horizontal
         if side == 0:
-            return self.canal.point(end, math.hypot(x[2], y[2]) * self.options.lay_beside, math.atan2(y[2], x[2]))
+            return self.canal.point(end, math.hypot(x[2], y[2]) * self.options.lay_above, math.atan2(y[2], x[2]))
         return self.canal.point(end, self.options.lay_beside, level if side > 0 else level + math.pi)
 
     def _room(self, sight: Sight, thing: int) -> float:
