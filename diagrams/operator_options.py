@@ -28,7 +28,7 @@ class OperatorOptions:
     """|d| beyond which the fingers are among the things, and only a clear miss is worth another push."""
     aim_tolerance_m: float = 0.006
     """A miss smaller than this is left alone."""
-    end_tolerance_m: float = 0.012
+    end_tolerance_m: float = 0.010
     """The same for a last push at the end, among the things."""
     let_go_at: float = 1.0
     """d at which the person lets go of what may lie anywhere at its goal, on the first try. Below 1 it is a slip of the
