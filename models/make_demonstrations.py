@@ -71,7 +71,8 @@ class Hand:
     """Standard deviation of the slow tremor [m]."""
 
 
-# Headings follow the azimuth, so that the arm moves in its own plane; the pitch keeps joint 5 (0.416 m behind the TCP)
+# Headings follow the azimuth, so that the arm moves in its own plane, but at the door of the machine, which is entered
+# 35° across it; the pitch keeps joint 5 (0.416 m behind the TCP)
 # within 0.33-0.58 m of the shoulder and in front of the column, and the gripper bent off the forearm by 20° and more:
 # at 0° nothing moves the hand to a side without turning joint 4 by 90°.
 LAUNDRY = Task(
@@ -89,6 +90,8 @@ LAUNDRY = Task(
         Key((0.050, 0.591, 0.575), 122, 44, 0.015, 2.5, 0.4),
         Key((0.024, 0.628, 0.552), 125, 43, 0.01, 2, 0.25),
         Key((-0.007, 0.673, 0.532), 125, 42, 0.011, 1.5, 0.15),
+        # Inside it is lowered, so that what is let go falls less deep. The hands part as far as the door lets the
+        # gripper, so that things can be laid side by side.
         Key((-0.050, 0.734, 0.480), 125, 41, 0.045, 1.5, 0.15),
         Key((-0.084, 0.783, 0.422), 125, 40, 0.085, 1.5, 0.15),
     ],
