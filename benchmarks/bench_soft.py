@@ -30,7 +30,7 @@ PADS = 5
 def contenders() -> Iterator[tuple[str, str, Setting, int]]:
     """Group, name, setting and segments of the towel; the choice first in each group."""
     base, cloth = Setting(), SoftMaterial()
-    for step in (0.005, 0.002, 0.003, 0.01):
+    for step in (base.time_step, 0.002, 0.005, 0.01):
         yield "time step", f"{1e3 * step:g} ms", replace(base, time_step=step), 0
     for name in ("lagged", "similar", "sap"):
         yield "approximation", name, replace(base, approximation=name), 0

@@ -16,8 +16,9 @@ from diagrams.item_sensor import ItemSensor
 from diagrams.layout import make_goals
 from diagrams.lio_drive import ARM, OPEN_ANGLE, LioDrive
 from diagrams.lio_sensors import JOINTS, LioSensor
+from diagrams.overlaps import check_overlaps
 from diagrams.scenario import Contact, Scenario
-from diagrams.scene import Scene, add_scene, check_overlaps
+from diagrams.scene import Scene, add_scene
 from diagrams.soft_contact import prepare_for_cloth
 
 START_POSTURE = np.array([-1.62113, -1.19688, 1.27447, 0.02532, 1.48154, -0.05674])
@@ -99,10 +100,7 @@ class LioStation(Diagram):
         builder.ExportOutput(query, "geometry_query")
         builder.BuildInto(self)
         self.set_name("lio_station")
-        context = self.CreateDefaultContext()
-        check_overlaps(
-            plant=plant, scene_graph=scene_graph, context=scene_graph.GetMyContextFromRoot(context), scene=self.scene
-        )
+        check_overlaps(plant=plant, scene_graph=scene_graph, root=self.CreateDefaultContext(), scene=self.scene)
 
     @property
     def X_WB(self) -> RigidTransform:

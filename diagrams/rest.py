@@ -25,7 +25,9 @@ from diagrams.soft_items import SoftItem, soft_positions
 PERIOD = 0.02  # [s]
 SETTLING = 0.06  # [s]: at the start everything hangs in the air with no speed
 NEAR = 0.012  # [m] between bounds; what moves may come nearer than this by two periods of its speed
-ROBOT_NEAR = 0.012  # [m], between bounds: what the arm and its fingers move in two periods at 0.3 m/s
+ROBOT_STILL_NEAR = 0.003  # [m] between bounds; the robot, too, may come nearer by two periods of its speed,
+ROBOT_NEAR = 0.015  # [m], at most: its arm moves at up to 0.3 m/s
+CARRIED = 0.25  # share of a piece's weight: what bears as much of it takes it along
 PRESSED = 15.0  # [N]: what the robot presses harder against a piece moves it; blows of falling cloth stay below
 # Bounds of a soft piece are those of each triangle of its surface: a long one that lies aslant has a large box around
 # it, and would be woken by what only passes.
@@ -52,23 +54,22 @@ class Rest:
         of_pieces = {g for piece in self._pieces for g in (*piece.own, *piece.at_rest)}
         self._others = [g for g in inspector.GetAllGeometryIds(Role.kProximity) if g not in of_pieces]
         self._piece_of = {g: k for k, piece in enumerate(self._pieces) for g in (*piece.own, *piece.at_rest)}
-        links = {}
-        for index in plant.GetBodyIndices(robot):
-            body = plant.get_body(index)
-            if plant.IsAnchored(body):
-                continue
-            shapes = [extent(inspector, g) for g in plant.GetCollisionGeometriesForBody(body)]
-            extents = [shape for shape in shapes if shape is not None]
-            if extents:
-                links[body] = extents
+        # A box for each shape: one around a bent finger would reach to what the finger passes.
+        links = [
+            (body, shape)
+            for body in map(plant.get_body, plant.GetBodyIndices(robot))
+            for shape in (extent(inspector, g) for g in plant.GetCollisionGeometriesForBody(body))
+            if shape is not None and not plant.IsAnchored(body)
+        ]
         rigid_items = [item for item in items if isinstance(item, RigidItem)]
         # Of links and rigid pieces at once, since one body at a time took a fifth of a run.
-        self._n_links = len(links)
+        self._links = [body for body, _ in links]
+        self._weights = [9.81 * piece.mass for piece in self._pieces]
         self._rigid = [k for k, item in enumerate(items) if isinstance(item, RigidItem)]
         self._soft = [(k, item) for k, item in enumerate(items) if isinstance(item, SoftItem)]
         self._triangles = {k: (item, item.shape.mesh.boundary()) for k, item in self._soft}
-        self._bodies = [*links, *(item.body for item in rigid_items)]
-        self._boxes = BodyBoxes([*links.values(), *(item.extents for item in rigid_items)])
+        self._bodies = [*self._links, *(item.body for item in rigid_items)]
+        self._boxes = BodyBoxes([*([shape] for _, shape in links), *(item.extents for item in rigid_items)])
 
     def __call__(self, root_context: Context) -> EventStatus:
         """Look, if it is time to; `root_context` belongs to the diagram that the plant is in."""
@@ -107,8 +108,8 @@ class Rest:
     def awake(self, context: Context) -> np.ndarray:
         """Which pieces are to be simulated, given the plant's context. Shape (n,), bool."""
         boxes = self._boxes([self._plant.EvalBodyPoseInWorld(context, body) for body in self._bodies])
-        links, pieces = boxes[: self._n_links], np.empty((len(self._pieces), 6))
-        pieces[self._rigid] = boxes[self._n_links :].bounds()
+        links, pieces = boxes[: len(self._links)], np.empty((len(self._pieces), 6))
+        pieces[self._rigid] = boxes[len(self._links) :].bounds()
         for k, item in self._soft:
             nodes = soft_positions(self._plant, context, item)
             pieces[k, :3], pieces[k, 3:] = nodes.min(axis=0), nodes.max(axis=0)
@@ -120,13 +121,14 @@ class Rest:
         speeds = [p.speed(context, size) for p, size in zip(self._pieces, sizes, strict=True)]
         active = [near or speed > STILL for near, speed in zip(touched, speeds, strict=True)]
         awake = np.array(active)
-        heights, gaps = (pieces[:, 2] + pieces[:, 5]).tolist(), _gaps(pieces, pieces).tolist()
+        gaps, forces = _gaps(pieces, pieces).tolist(), self._forces(context)
         for j in (j for j, stirs in enumerate(active) if stirs):
             reach = NEAR + (2.0 * PERIOD * speeds[j] if np.isfinite(speeds[j]) else 0.0)
             for i in (i for i, stirs in enumerate(active) if not stirs):
                 if gaps[i][j] < reach and self._near(context, pieces, i, j, reach):
-                    carried = speeds[j] > STILL and heights[j] < heights[i]
-                    awake[i] |= carried or (touched[j] and (was_awake[i] or self._pressed(context, i, j)))
+                    force = forces.get((i, j), np.zeros(3))
+                    carried = speeds[j] > STILL and force[2] > CARRIED * self._weights[i]
+                    awake[i] |= carried or (touched[j] and (was_awake[i] or np.linalg.norm(force) > PRESSED))
         return awake
 
     def _parts(self, context: Context, pieces: np.ndarray, k: int) -> np.ndarray:
@@ -139,11 +141,23 @@ class Rest:
 
     def _touched(self, context: Context, links: Boxes, pieces: np.ndarray) -> list[bool]:
         """Which pieces the robot is near to."""
-        touched = (links.gaps(pieces) < ROBOT_NEAR).any(axis=1).tolist()
+        gaps = links.gaps(pieces)
+        if not (gaps < ROBOT_NEAR).any():
+            return [False] * len(self._pieces)
+        reach = np.minimum(ROBOT_NEAR, ROBOT_STILL_NEAR + 2.0 * PERIOD * self._link_speeds(context, links))
+        touched = (gaps < reach).any(axis=1).tolist()
         for k, _ in self._soft:
             if touched[k]:
-                touched[k] = bool((links.gaps(self._parts(context, pieces, k)) < ROBOT_NEAR).any())
+                touched[k] = bool((links.gaps(self._parts(context, pieces, k)) < reach).any())
         return touched
+
+    def _link_speeds(self, context: Context, links: Boxes) -> np.ndarray:
+        """At most, of any point of each shape of the robot [m/s]. Shape (m,)."""
+        velocities = [self._plant.EvalBodySpatialVelocityInWorld(context, body) for body in self._links]
+        turning = np.array([np.linalg.norm(V.rotational()) for V in velocities])
+        origins = np.array([self._plant.EvalBodyPoseInWorld(context, body).translation() for body in self._links])
+        sizes = np.linalg.norm(links.middles - origins, axis=1) + np.linalg.norm(links.halves, axis=1)
+        return np.array([np.linalg.norm(V.translational()) for V in velocities]) + turning * sizes
 
     def _near(self, context: Context, pieces: np.ndarray, i: int, j: int, reach: float) -> bool:
         """Whether pieces i and j, whose bounds are, are nearer to each other than `reach` [m]."""
@@ -151,20 +165,28 @@ class Rest:
             return True
         return bool((_gaps(self._parts(context, pieces, i), self._parts(context, pieces, j)) < reach).any())
 
-    def _pressed(self, context: Context, i: int, j: int) -> bool:
-        """Whether the awake piece j presses hard on the resting one, i."""
+    def _forces(self, context: Context) -> dict[tuple[int, int], np.ndarray]:
+        """On piece i from piece j [N], in W, of those pairs (i, j) that touched in the last step."""
         results = self._plant.get_contact_results_output_port().Eval(context)
-        pair, force = {i, j}, 0.0
+        forces: dict[tuple[int, int], np.ndarray] = {}
+
+        def count(a: GeometryId, b: GeometryId, force_on_a: np.ndarray) -> None:
+            i, j = self._piece_of.get(a), self._piece_of.get(b)
+            if i is not None and j is not None:
+                forces[i, j] = forces.get((i, j), np.zeros(3)) + force_on_a
+                forces[j, i] = -forces[i, j]
+
         for k in range(results.num_deformable_contacts()):
             info = results.deformable_contact_info(k)
-            if {self._piece_of.get(info.id_A()), self._piece_of.get(info.id_B())} == pair:
-                force += np.linalg.norm(info.F_Ac_W().translational())
+            count(info.id_A(), info.id_B(), info.F_Ac_W().translational())
         for k in range(results.num_hydroelastic_contacts()):
             patch = results.hydroelastic_contact_info(k)
             surface = patch.contact_surface()
-            if {self._piece_of.get(surface.id_M()), self._piece_of.get(surface.id_N())} == pair:
-                force += np.linalg.norm(patch.F_Ac_W().translational())
-        return bool(force > PRESSED)
+            count(surface.id_M(), surface.id_N(), patch.F_Ac_W().translational())
+        for k in range(results.num_point_pair_contacts()):
+            point = results.point_pair_contact_info(k)
+            count(point.point_pair().id_B, point.point_pair().id_A, point.contact_force())
+        return forces
 
 
 def _gaps(a: np.ndarray, b: np.ndarray) -> np.ndarray:

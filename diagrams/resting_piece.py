@@ -34,6 +34,11 @@ class Piece(Protocol):
         """What is in their place while it rests."""
         ...
 
+    @property
+    def mass(self) -> float:
+        """[kg]."""
+        ...
+
     def speed(self, context: Context, size: float) -> float:
         """Of its fastest point [m/s], at most `size` [m] from its middle; infinite where it stands still only for a
         moment."""
@@ -69,6 +74,11 @@ class SoftPiece:
     def at_rest(self) -> list[GeometryId]:
         """See `Piece`."""
         return [self.item.cast_id]
+
+    @property
+    def mass(self) -> float:
+        """See `Piece`."""
+        return self.item.shape.mass
 
     def speed(self, context: Context, size: float) -> float:
         """See `Piece`."""
@@ -110,6 +120,11 @@ class RigidPiece:
     def at_rest(self) -> list[GeometryId]:
         """See `Piece`."""
         return self.own
+
+    @property
+    def mass(self) -> float:
+        """See `Piece`."""
+        return float(self.item.body.default_mass())
 
     def speed(self, context: Context, size: float) -> float:
         """See `Piece`."""

@@ -5,13 +5,12 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 
 import numpy as np
-from pydrake.geometry import Cylinder, GeometryId, SceneGraph
+from pydrake.geometry import Cylinder, SceneGraph
 from pydrake.math import RigidTransform
 from pydrake.multibody.parsing import Parser
 from pydrake.multibody.plant import MultibodyPlant
 from pydrake.multibody.tree import ModelInstanceIndex, RigidBody
 
-from canal.errors import InputError
 from diagrams.layout import Spot, base_pose, draw_layout, yaw_pose
 from diagrams.scenario import Item, Robot, Scenario, Thing
 from diagrams.shape_bounds import BodyBounds, Extent, extent
@@ -21,8 +20,6 @@ from models import LIO_URDF, MODELS
 
 DROP = 0.001
 """Items start this far above their surface [m], and settle."""
-OVERLAP = 0.003
-"""What may lie inside another at the start [m]: a basket stands on a table, a door on its hinge."""
 MARK_RADIUS = 0.045
 MARK_COLORS = {"apple": (0.83, 0.14, 0.13), "cup": (0.05, 0.55, 0.60), "cube": (0.95, 0.68, 0.18)}
 """A mark wears the colour of its item."""
@@ -132,52 +129,3 @@ def _add_item(
     X.set_translation(start.position + [0, 0, height + DROP])
     plant.SetDefaultFloatingBaseBodyPose(body, X)
     return height, RigidItem(item.name, body, extents)
-
-
-def check_overlaps(*, plant: MultibodyPlant, scene_graph: SceneGraph, context: object, scene: Scene) -> None:
-    """Refuse a scene in which one thing lies inside another.
-
-    Args:
-        plant: finalized.
-        scene_graph: of the same diagram.
-        context: of the diagram's scene graph, as it starts.
-        scene: what was added.
-
-    Raises:
-        InputError: names the two, and how deep.
-    """
-    query = scene_graph.get_query_output_port().Eval(context)
-    inspector = query.inspector()
-    solids: list[tuple[str, list[GeometryId]]] = [("lio", _geometries(plant, [scene.lio]))]
-    for name, models in scene.things.items():
-        solids += [(name, _geometries(plant, [model])) for model in models]
-    solids += [(i.name, list(plant.GetCollisionGeometriesForBody(i.body))) for i in scene.rigid_items]
-    boxes = {}
-    for _, geometries in solids:
-        for g in geometries:
-            shape = extent(inspector, g)
-            # An extent is in the body's frame.
-            X_WP = query.GetPoseInWorld(inspector.GetFrameId(g))
-            boxes[g] = None if shape is None else np.split(BodyBounds([[shape]])([X_WP])[0], 2)
-    for i, (name_a, of_a) in enumerate(solids):
-        for name_b, of_b in solids[i + 1 :]:
-            depth = max((_depth(query, boxes, a, b) for a in of_a for b in of_b), default=0.0)
-            if depth > OVERLAP:
-                raise InputError(
-                    f"{name_b!r} lies {1e3 * depth:.0f} mm inside {name_a!r}; at most {1e3 * OVERLAP:.0f} mm is "
-                    "accepted: move one of them"
-                )
-
-
-def _geometries(plant: MultibodyPlant, models: list[ModelInstanceIndex]) -> list[GeometryId]:
-    bodies = [plant.get_body(b) for m in models for b in plant.GetBodyIndices(m)]
-    return [g for body in bodies for g in plant.GetCollisionGeometriesForBody(body)]
-
-
-def _depth(query: object, boxes: dict, a: GeometryId, b: GeometryId) -> float:
-    if boxes[a] is None or boxes[b] is None:
-        return 0.0
-    (low_a, high_a), (low_b, high_b) = boxes[a], boxes[b]
-    if np.any(low_a > high_b - OVERLAP) or np.any(low_b > high_a - OVERLAP):
-        return 0.0
-    return -query.ComputeSignedDistancePairClosestPoints(a, b).distance  # type: ignore[attr-defined]

@@ -41,8 +41,8 @@ PAD_GRADIENT = 1.0e7
 MARGIN = 0.001
 """How far off a surface contact is foreseen [m]. A contact point is the middle of the part of a triangle that is nearer
 than this, so that a corner that points down lies as deep as twice the margin before anything holds it: 8 mm at rest
-with 5 mm. What falls at 1 m/s sinks in by what it falls in a step of 5 ms, less the margin: a towel that topples by
-5.0 mm with 1 mm, 5.2 with 1.5, 5.4 with 2."""
+with 5 mm. What falls at 1 m/s sinks in by what it falls in a step, less the margin: a towel that topples, with steps of
+5 ms, by 5.0 mm with 1 mm, 5.2 with 1.5, 5.4 with 2."""
 
 
 def prepare_for_cloth(

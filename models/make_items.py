@@ -17,10 +17,13 @@ HERE = Path(__file__).parent / "items"
 MESHES = HERE / "meshes"
 SCRIPT = "models/make_items.py"
 
-SKIN = Material(friction=0.8)
-CHINA = Material(friction=0.8)
-BEECH = Material(friction=0.8)
-COTTON = Material(friction=0.9)
+HARD = 1e8
+"""Modulus [Pa]: so stiff that it gives way to nothing here, but not rigid, since Drake computes rigid on rigid as one
+point, on which a bundle that lies on another rocks without end."""
+SKIN = Material(friction=0.8, modulus=HARD)
+CHINA = Material(friction=0.8, modulus=HARD)
+BEECH = Material(friction=0.8, modulus=HARD)
+COTTON = Material(friction=0.9, modulus=HARD)
 
 RED, LEAF, STALK = (0.83, 0.14, 0.13), (0.35, 0.60, 0.20), (0.38, 0.26, 0.15)
 TEAL, AMBER = (0.05, 0.55, 0.60), (0.95, 0.68, 0.18)

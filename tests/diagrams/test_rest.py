@@ -68,7 +68,9 @@ def test_a_resting_piece_holds_what_falls_on_it():
 def test_what_moves_below_a_resting_piece_wakes_it():
     station, rest, simulator = station_at_rest(3.0)
     _, context, below, _above = put_above(station, rest, simulator, 0.06)
+    simulator.AdvanceTo(3.4)
     rest.set_awake(simulator.get_mutable_context(), np.array([True, False, False]))
+    simulator.AdvanceTo(3.41)
     moving = SpatialVelocity(w=np.zeros(3), v=np.array([0.1, 0, 0]))
     station.plant.SetFreeBodySpatialVelocity(context, below.body, moving)
     assert rest.awake(context).tolist() == [True, True, False]

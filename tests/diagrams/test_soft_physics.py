@@ -118,8 +118,10 @@ def test_still_pieces_rest_and_wake_before_they_are_touched():
     np.testing.assert_array_equal(rig.nodes(0), still)
     x, y = still.mean(axis=0)[:2]
     rig.move([x, y, 0.328, 0.0, OPEN], 0.8)
-    assert awake() == [True, False]
+    rig.wait(0.2)
+    assert awake() == [False, False], "the hand stands round it and does not move"
     rig.move([x, y, 0.328, 0.0, CLOSED], 0.5)
+    assert awake() == [True, False]
     rig.move([x, y, 0.45, 0.0, CLOSED], 0.6)
     assert awake() == [True, False]
     assert rig.nodes(0)[:, 2].min() > FLOOR + 0.03

@@ -112,14 +112,6 @@ def test_a_touch_is_felt():
     assert forces["lio-machine"] == forces["lio-floor"] == 0.0
 
 
-def test_things_inside_each_other_are_refused():
-    def sunk(scenario):
-        scenario.things[2].position = [0.45, 0.0, 0.27]
-
-    with pytest.raises(InputError, match=r"'basket' lies \d+ mm inside 'table'; .*move one"):
-        Rig(change=sunk)
-
-
 @pytest.mark.parametrize("q0", [np.full(6, 3.0), np.zeros(5), np.full(6, np.nan)])
 def test_a_posture_that_cannot_be_is_refused(q0):
     with pytest.raises(InputError, match="start posture"):
