@@ -17,6 +17,8 @@ import numpy as np
 from pydrake.systems.framework import Context
 
 from benchmarks.table import Row, print_table, write_csv
+from diagrams.contacts import each_contact
+from diagrams.resting_piece import make_piece
 from diagrams.scenario import load_scenario, with_items
 from diagrams.scene import RigidItem
 from diagrams.shared_autonomy import SharedAutonomy, build_shared_autonomy
@@ -41,12 +43,17 @@ class Watch:
         self._system = system
         self._next_tick = self._next_half = 0.0
         self._spent, self._since = 0.0, time.process_time()
+        plant, scene = system.station.plant, system.station.scene
+        bodies = [plant.get_body(b) for b in plant.GetBodyIndices(scene.lio)]
+        self._hand = {g for body in bodies for g in plant.GetCollisionGeometriesForBody(body)}
+        self._pieces = [make_piece(plant, system.station.scene_graph, item) for item in scene.items]
+        self._set_down = False
         self._at_grip: tuple[float, list[float]] | None = None
         self._held: tuple[int, np.ndarray, np.ndarray] | None = None
         self.penetration: list[float] = []
         """[m], at every tick."""
         self.slip: dict[str, float] = {}
-        """Greatest of each thing in a carry [m]."""
+        """Greatest of each thing in a carry, until it is set down [m]."""
         self.factors: list[float] = []
         """Simulated over processor time, of each half second."""
 
@@ -72,6 +79,7 @@ class Watch:
         X_WT = plant.EvalBodyPoseInWorld(plant_context, plant.GetBodyByName("tcp", station.scene.lio))
         if not closed:
             self._at_grip = self._held = None
+            self._set_down = False
             return
         height = float(X_WT.translation()[2])
         clouds = [self._points(plant_context, k, X_WT) for k in range(len(station.scene.items))]
@@ -87,10 +95,23 @@ class Watch:
                 self._held = k, points[near].mean(axis=0), near
         if self._held is not None:
             k, before, near = self._held
+            self._set_down |= self._borne(plant_context, k) > 9.81 * self._pieces[k].mass / 2
+        if self._held is not None and not self._set_down:
             moved = self._points(plant_context, k, X_WT)[near].mean(axis=0) - before
             slip = float(np.hypot(moved[0], moved[2]))  # along the pads; y is how they squeeze
             name = station.scene.items[k].name
             self.slip[name] = max(slip, self.slip.get(name, 0.0))
+
+    def _borne(self, plant_context: Context, k: int) -> float:
+        """How much of thing k lies on anything but the robot [N]."""
+        results = self._system.station.plant.get_contact_results_output_port().Eval(plant_context)
+        upwards, own = 0.0, self._pieces[k].own
+        for a, b, force in each_contact(results):
+            if a in own and b not in self._hand:
+                upwards += force[2]
+            elif b in own and a not in self._hand:
+                upwards -= force[2]
+        return upwards
 
     def _points(self, plant_context: Context, k: int, X_WT: Any) -> np.ndarray:
         """Of thing k in the tool's frame [m]: its nodes, or the origin of a rigid one. Shape (n, 3)."""

@@ -1,8 +1,8 @@
 """Where a piece ends if the time step is halved: soft and rigid ones fall into the machine's drum, with both steps.
 
-Measured from the default to half of it: soft ones (4 ms) end within 6 mm over four turns of each (towel 0.8, shirt 2.6,
-sock 5.6). Rigid ones (5 ms) over 21 turns of each: towel and shirt within 0.5 mm; the sock within 3 mm in 12 of them,
-else within 22 mm, since it rolls on to another of its facets.
+Measured from the default, 4 ms, to half of it: soft ones end within 6 mm over four turns of each (towel 0.8, shirt 2.6,
+sock 5.6). Rigid ones over 21 turns of each: within 3 mm in 45 of 63, else within 19 mm, since a bundle that rolls may
+come to lie on another of its facets.
 """
 
 from __future__ import annotations
@@ -54,7 +54,7 @@ def end_of_fall(kind: str, *, soft: bool, time_step: float, turn: float) -> np.n
 
 def apart(kind: str, *, soft: bool, turns: tuple[float, ...] = (0.0, 0.4, 0.8, 1.2)) -> float:
     """Greatest distance between where a piece ends with the time step and with half of it [m], over some turns."""
-    time_step = plant_config(Contact().for_items(soft)).time_step
+    time_step = Contact().time_step
     ends = [
         [end_of_fall(kind, soft=soft, time_step=step, turn=turn) for step in (time_step, time_step / 2)]
         for turn in turns

@@ -36,7 +36,7 @@ TICK = 0.01  # [s]
 class Setting:
     """What is varied: how the plant is discretized and what cloth is made of."""
 
-    time_step: float = plant_config(Contact().for_items(True)).time_step
+    time_step: float = Contact().time_step
     approximation: str = "lagged"
     stiction_tolerance: float = Contact().stiction_tolerance
     gradient: float | None = None

@@ -8,6 +8,7 @@ from pydrake.geometry import GeometryId, QueryObject, SceneGraph
 from pydrake.multibody.plant import ContactResults, MultibodyPlant
 from pydrake.systems.framework import BasicVector, Context, LeafSystem
 
+from diagrams.contacts import each_contact
 from diagrams.scene import Scene
 from diagrams.soft_depth import FixedBoxes
 
@@ -53,19 +54,11 @@ class ContactSensor(LeafSystem):
         return self._thing_of_body.get(a) if b in self._lio else None
 
     def _calc_forces(self, context: Context, output: BasicVector) -> None:
-        results = self._results.Eval(context)
         forces = np.zeros(len(self.contact_pairs))
-        for i in range(results.num_point_pair_contacts()):
-            point = results.point_pair_contact_info(i)
-            pair = self._pair(int(point.bodyA_index()), int(point.bodyB_index()))
+        for a, b, force in each_contact(self._results.Eval(context)):
+            pair = self._pair(self._body[a], self._body[b])
             if pair is not None:
-                forces[pair] += np.linalg.norm(point.contact_force())
-        for i in range(results.num_hydroelastic_contacts()):
-            patch = results.hydroelastic_contact_info(i)
-            surface = patch.contact_surface()
-            pair = self._pair(self._body[surface.id_M()], self._body[surface.id_N()])
-            if pair is not None:
-                forces[pair] += np.linalg.norm(patch.F_Ac_W().translational())
+                forces[pair] += np.linalg.norm(force)
         output.SetFromVector(forces)
 
     def _calc_penetration(self, context: Context, output: BasicVector) -> None:

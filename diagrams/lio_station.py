@@ -125,7 +125,7 @@ class LioStation(Diagram):
 
 
 def plant_config(contact: Contact) -> MultibodyPlantConfig:
-    """How Drake is to compute contact; time step and approximation are given (`Contact.for_items`)."""
+    """How Drake is to compute contact; the approximation is given (`Contact.for_items`)."""
     return MultibodyPlantConfig(
         time_step=contact.time_step,
         discrete_contact_approximation=contact.approximation,

@@ -2,8 +2,8 @@
 
 A resting piece stays where it is, is met by others as a fixed solid, and costs nothing (a step of three resting soft
 pieces: 3.9 ms awake, 0.3 ms asleep; a sock that falls on a towel: 6.5 ms with the towel awake, 1.9 ms at rest, and it
-comes to lie within 4 mm of where it would). It wakes *before* the robot touches it, when what lies below it moves, and
-when the robot presses something against it; what merely comes to lie on it does not wake it.
+comes to lie within 4 mm of where it would). It wakes *before* the robot touches it, when what bears it moves, and when
+the robot presses something against it; what merely comes to lie on it, or beside it, does not wake it.
 Which pieces rest is a parameter of the plant and of the scene graph in the Context; nothing is kept here.
 """
 
@@ -17,7 +17,8 @@ from pydrake.multibody.plant import MultibodyPlant
 from pydrake.multibody.tree import ModelInstanceIndex
 from pydrake.systems.framework import Context, EventStatus
 
-from diagrams.resting_piece import STILL, Piece, RigidPiece, SoftPiece
+from diagrams.contacts import each_contact
+from diagrams.resting_piece import STILL, make_piece
 from diagrams.scene import RigidItem
 from diagrams.shape_bounds import BodyBoxes, Boxes, extent
 from diagrams.soft_items import SoftItem, soft_positions
@@ -25,9 +26,9 @@ from diagrams.soft_items import SoftItem, soft_positions
 PERIOD = 0.02  # [s]
 SETTLING = 0.06  # [s]: at the start everything hangs in the air with no speed
 NEAR = 0.012  # [m] between bounds; what moves may come nearer than this by two periods of its speed
-ROBOT_STILL_NEAR = 0.003  # [m] between bounds; the robot, too, may come nearer by two periods of its speed,
-ROBOT_NEAR = 0.015  # [m], at most: its arm moves at up to 0.3 m/s
-CARRIED = 0.25  # share of a piece's weight: what bears as much of it takes it along
+STILL_ROBOT_NEAR = 0.003  # [m] between bounds, while the robot stands; while it moves, two periods of its speed more,
+ROBOT_NEAR = 0.015  # [m] but no more than this: it moves at up to 0.3 m/s
+CARRIED = 0.25  # share of a piece's weight: what bears more of it takes it along
 PRESSED = 15.0  # [N]: what the robot presses harder against a piece moves it; blows of falling cloth stay below
 # Bounds of a soft piece are those of each triangle of its surface: a long one that lies aslant has a large box around
 # it, and would be woken by what only passes.
@@ -46,10 +47,7 @@ class Rest:
     ) -> None:
         self._plant = plant
         self._scene_graph = scene_graph
-        self._pieces: list[Piece] = [
-            SoftPiece(plant, scene_graph, item) if isinstance(item, SoftItem) else RigidPiece(plant, item)
-            for item in items
-        ]
+        self._pieces = [make_piece(plant, scene_graph, item) for item in items]
         inspector = scene_graph.model_inspector()
         of_pieces = {g for piece in self._pieces for g in (*piece.own, *piece.at_rest)}
         self._others = [g for g in inspector.GetAllGeometryIds(Role.kProximity) if g not in of_pieces]
@@ -121,14 +119,17 @@ class Rest:
         speeds = [p.speed(context, size) for p, size in zip(self._pieces, sizes, strict=True)]
         active = [near or speed > STILL for near, speed in zip(touched, speeds, strict=True)]
         awake = np.array(active)
-        gaps, forces = _gaps(pieces, pieces).tolist(), self._forces(context)
+        gaps, neighbours = _gaps(pieces, pieces).tolist(), []
         for j in (j for j, stirs in enumerate(active) if stirs):
             reach = NEAR + (2.0 * PERIOD * speeds[j] if np.isfinite(speeds[j]) else 0.0)
             for i in (i for i, stirs in enumerate(active) if not stirs):
                 if gaps[i][j] < reach and self._near(context, pieces, i, j, reach):
-                    force = forces.get((i, j), np.zeros(3))
-                    carried = speeds[j] > STILL and force[2] > CARRIED * self._weights[i]
-                    awake[i] |= carried or (touched[j] and (was_awake[i] or np.linalg.norm(force) > PRESSED))
+                    neighbours.append((i, j))
+        forces = self._forces(context) if neighbours else {}
+        for i, j in neighbours:
+            force = forces.get((i, j), np.zeros(3))
+            carried = speeds[j] > STILL and force[2] > CARRIED * self._weights[i]
+            awake[i] |= carried or (touched[j] and (was_awake[i] or np.linalg.norm(force) > PRESSED))
         return awake
 
     def _parts(self, context: Context, pieces: np.ndarray, k: int) -> np.ndarray:
@@ -144,7 +145,7 @@ class Rest:
         gaps = links.gaps(pieces)
         if not (gaps < ROBOT_NEAR).any():
             return [False] * len(self._pieces)
-        reach = np.minimum(ROBOT_NEAR, ROBOT_STILL_NEAR + 2.0 * PERIOD * self._link_speeds(context, links))
+        reach = np.minimum(ROBOT_NEAR, STILL_ROBOT_NEAR + 2.0 * PERIOD * self._link_speeds(context, links))
         touched = (gaps < reach).any(axis=1).tolist()
         for k, _ in self._soft:
             if touched[k]:
@@ -169,23 +170,11 @@ class Rest:
         """On piece i from piece j [N], in W, of those pairs (i, j) that touched in the last step."""
         results = self._plant.get_contact_results_output_port().Eval(context)
         forces: dict[tuple[int, int], np.ndarray] = {}
-
-        def count(a: GeometryId, b: GeometryId, force_on_a: np.ndarray) -> None:
+        for a, b, force_on_a in each_contact(results):
             i, j = self._piece_of.get(a), self._piece_of.get(b)
             if i is not None and j is not None:
                 forces[i, j] = forces.get((i, j), np.zeros(3)) + force_on_a
                 forces[j, i] = -forces[i, j]
-
-        for k in range(results.num_deformable_contacts()):
-            info = results.deformable_contact_info(k)
-            count(info.id_A(), info.id_B(), info.F_Ac_W().translational())
-        for k in range(results.num_hydroelastic_contacts()):
-            patch = results.hydroelastic_contact_info(k)
-            surface = patch.contact_surface()
-            count(surface.id_M(), surface.id_N(), patch.F_Ac_W().translational())
-        for k in range(results.num_point_pair_contacts()):
-            point = results.point_pair_contact_info(k)
-            count(point.point_pair().id_B, point.point_pair().id_A, point.contact_force())
         return forces
 
 

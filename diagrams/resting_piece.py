@@ -151,5 +151,10 @@ class RigidPiece:
         self.item.body.Lock(self.plant.GetMyMutableContextFromRoot(root))
 
 
+def make_piece(plant: MultibodyPlant, scene_graph: SceneGraph, item: RigidItem | SoftItem) -> Piece:
+    """As its kind is."""
+    return SoftPiece(plant, scene_graph, item) if isinstance(item, SoftItem) else RigidPiece(plant, item)
+
+
 STILL = 0.003  # [m/s], of the fastest node; settled piles creep at 0.0001
 UNMOVED = 0.05  # [m/s²]: where a rocking bundle turns it has no speed either, but 0.1 and more of this
