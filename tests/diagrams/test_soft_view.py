@@ -13,9 +13,10 @@ from diagrams.soft_view import SoftView
 
 
 class Canvas:
-    """Stands in for Meshcat's two calls, and keeps what they were given."""
+    """Stands in for Meshcat's three calls, and keeps what they were given."""
 
     def __init__(self):
+        self.moves: list[tuple[str, RigidTransform, float]] = []
         self.meshes: dict[str, np.ndarray] = {}
         self.shown: list[tuple[str, bool, float]] = []
 
@@ -27,8 +28,11 @@ class Canvas:
         assert name == "visible"
         self.shown.append((path, value, time))
 
+    def SetTransform(self, path, X_ParentPath, time_in_recording):
+        self.moves.append((path, X_ParentPath, time_in_recording))
 
-def falling_sock(canvas, recording, until):
+
+def falling_sock(canvas, recording, until, spin=0.0):
     builder = DiagramBuilder()
     plant, scene_graph = AddMultibodyPlant(MultibodyPlantConfig(time_step=0.005), builder)
     sock = add_soft_item(plant=plant, name="sock", shape=make_shape("sock"), X_WP=RigidTransform([0, 0, 1.0]))
@@ -36,6 +40,10 @@ def falling_sock(canvas, recording, until):
     SoftView.AddToBuilder(builder=builder, scene_graph=scene_graph, items=[sock], meshcat=canvas, recording=recording)
     diagram = builder.Build()
     simulator = Simulator(diagram)
+    context = plant.GetMyMutableContextFromRoot(simulator.get_mutable_context())
+    start = plant.deformable_model().GetPositions(context, sock.body_id)
+    turning = spin * np.cross([0.0, 0.0, 1.0], (start - start.mean(axis=1, keepdims=True)).T)
+    plant.deformable_model().SetPositionsAndVelocities(context, sock.body_id, start, turning.T)
     simulator.AdvanceTo(until)
     nodes = plant.deformable_model().GetPositions(plant.GetMyContextFromRoot(simulator.get_context()), sock.body_id).T
     return sock.shape.surface.positions(nodes)
@@ -48,10 +56,20 @@ def test_the_surface_is_drawn_where_the_solid_is():
     np.testing.assert_allclose(canvas.meshes["soft/sock"], surface, atol=5e-3 + 1e-3)
 
 
-def test_a_recording_shows_one_frame_at_a_time():
+def test_a_recording_moves_what_does_not_bend_and_redraws_what_does():
+    falls, spins = Canvas(), Canvas()
+    surface = falling_sock(falls, recording=True, until=0.5)
+    assert set(falls.meshes) == {"soft/sock/0"}
+    path, X, time = falls.moves[-1]
+    assert (path, time) == ("soft/sock/0", 0.5)
+    np.testing.assert_allclose(X.multiply(falls.meshes[path].T).T, surface, atol=3e-3)
+    falling_sock(spins, recording=True, until=0.5, spin=30.0)
+    assert len(spins.meshes) > 2
+
+
+def test_a_recording_shows_one_surface_at_a_time():
     canvas = Canvas()
-    falling_sock(canvas, recording=True, until=0.5)
-    assert len(canvas.meshes) == 6  # at 0, 0.1, ... 0.5 s
+    falling_sock(canvas, recording=True, until=0.5, spin=30.0)
     visible: set[str] = set()
     times = sorted({t for _, _, t in canvas.shown if t > 0.0})
     for time in times:
