@@ -23,13 +23,19 @@ def test_things_inside_each_other_are_refused():
     scenario = load_scenario("laundry")
     basket = next(thing for thing in scenario.things if thing.name == "basket")
     basket.position[2] -= 0.05
-    with pytest.raises(InputError, match=r"'basket' lies \d+ mm inside 'table'; .*move one"):
+    with pytest.raises(InputError, match=r"'basket' lies [\d.]+ mm inside 'table'; .*move one"):
         LioStation(scenario)
 
 
 def test_cloth_inside_a_wall_is_refused():
-    with pytest.raises(InputError, match=r"'sock' lies \d+ mm inside 'basket'; .*move one"):
+    with pytest.raises(InputError, match=r"'sock' lies [\d.]+ mm inside 'basket'; .*move one"):
         LioStation(laundry_with(sock=[0.0, 0.19]))
+
+
+@pytest.mark.parametrize("x", [0.08, 0.13, 0.14, 0.18])
+def test_cloth_that_a_wall_passes_through_between_nodes_is_refused(x):
+    with pytest.raises(InputError, match=r"'towel' lies [\d.]+ mm inside 'basket'; .*move one"):
+        LioStation(laundry_with(towel=[x, -0.164]))
 
 
 def test_cloth_inside_cloth_is_refused():
