@@ -17,7 +17,7 @@ import numpy as np
 from pydrake.systems.framework import Context
 
 from benchmarks.table import Row, print_table, write_csv
-from diagrams.contacts import each_contact
+from diagrams.contacts import collision_shapes, each_contact
 from diagrams.resting_piece import make_piece
 from diagrams.scenario import load_scenario, with_items
 from diagrams.scene import RigidItem
@@ -44,8 +44,7 @@ class Watch:
         self._next_tick = self._next_half = 0.0
         self._spent, self._since = 0.0, time.process_time()
         plant, scene = system.station.plant, system.station.scene
-        bodies = [plant.get_body(b) for b in plant.GetBodyIndices(scene.lio)]
-        self._hand = {g for body in bodies for g in plant.GetCollisionGeometriesForBody(body)}
+        self._hand = set(collision_shapes(plant, [scene.lio]))
         self._pieces = [make_piece(plant, system.station.scene_graph, item) for item in scene.items]
         self._set_down = False
         self._at_grip: tuple[float, list[float]] | None = None
@@ -93,11 +92,12 @@ class Watch:
                 points = clouds[k]
                 near = np.argsort(np.linalg.norm(points, axis=1))[:NEAREST]
                 self._held = k, points[near].mean(axis=0), near
-        if self._held is not None:
-            k, before, near = self._held
-            self._set_down |= self._borne(plant_context, k) > 9.81 * self._pieces[k].mass / 2
-        if self._held is not None and not self._set_down:
-            moved = self._points(plant_context, k, X_WT)[near].mean(axis=0) - before
+        if self._held is None:
+            return
+        k, before, near = self._held
+        self._set_down |= self._borne(plant_context, k) > self._pieces[k].weight / 2
+        if not self._set_down:
+            moved = clouds[k][near].mean(axis=0) - before
             slip = float(np.hypot(moved[0], moved[2]))  # along the pads; y is how they squeeze
             name = station.scene.items[k].name
             self.slip[name] = max(slip, self.slip.get(name, 0.0))

@@ -1,12 +1,19 @@
-"""The contacts of a step, of whatever kind, as pairs of shapes."""
+"""What can touch, and the contacts of a step, of whatever kind."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 
 import numpy as np
 from pydrake.geometry import GeometryId
-from pydrake.multibody.plant import ContactResults
+from pydrake.multibody.plant import ContactResults, MultibodyPlant
+from pydrake.multibody.tree import ModelInstanceIndex
+
+
+def collision_shapes(plant: MultibodyPlant, models: Iterable[ModelInstanceIndex]) -> list[GeometryId]:
+    """Shapes that touch, of all bodies of some models."""
+    bodies = [plant.get_body(index) for model in models for index in plant.GetBodyIndices(model)]
+    return [shape for body in bodies for shape in plant.GetCollisionGeometriesForBody(body)]
 
 
 def each_contact(results: ContactResults) -> Iterator[tuple[GeometryId, GeometryId, np.ndarray]]:

@@ -7,13 +7,13 @@ from itertools import combinations
 import numpy as np
 from pydrake.geometry import GeometryId, QueryObject, SceneGraph
 from pydrake.multibody.plant import MultibodyPlant
-from pydrake.multibody.tree import ModelInstanceIndex
 from pydrake.systems.framework import Context
 
 from canal.errors import InputError
+from diagrams.contacts import collision_shapes
 from diagrams.scene import Scene
 from diagrams.shape_bounds import BodyBounds, extent
-from diagrams.soft_items import SoftItem, soft_positions
+from diagrams.soft_items import soft_mesh
 from diagrams.soft_meshes import TetMesh, embed
 
 OVERLAP = 0.003
@@ -33,13 +33,13 @@ def check_overlaps(*, plant: MultibodyPlant, scene_graph: SceneGraph, root: Cont
         InputError: names the two, and how deep.
     """
     query = scene_graph.get_query_output_port().Eval(scene_graph.GetMyContextFromRoot(root))
-    solids: list[tuple[str, list[GeometryId]]] = [("lio", _geometries(plant, [scene.lio]))]
+    solids: list[tuple[str, list[GeometryId]]] = [("lio", collision_shapes(plant, [scene.lio]))]
     for name, models in scene.things.items():
-        solids += [(name, _geometries(plant, [model])) for model in models]
+        solids += [(name, collision_shapes(plant, [model])) for model in models]
     solids += [(i.name, list(plant.GetCollisionGeometriesForBody(i.body))) for i in scene.rigid_items]
     _check_solids(query, solids)
     context = plant.GetMyContextFromRoot(root)
-    _check_cloth(query, solids, {i.name: _mesh(plant, context, i) for i in scene.soft_items})
+    _check_cloth(query, solids, {i.name: soft_mesh(plant, context, i) for i in scene.soft_items})
 
 
 def _check_solids(query: QueryObject, solids: list[tuple[str, list[GeometryId]]]) -> None:
@@ -81,15 +81,6 @@ def _refuse(inner: str, outer: str, depth: float) -> None:
             f"{inner!r} lies {1e3 * depth:.1f} mm inside {outer!r}; at most {1e3 * OVERLAP:.0f} mm is accepted: "
             "move one of them"
         )
-
-
-def _mesh(plant: MultibodyPlant, context: Context, item: SoftItem) -> TetMesh:
-    return TetMesh(soft_positions(plant, context, item), item.shape.mesh.tetrahedra)
-
-
-def _geometries(plant: MultibodyPlant, models: list[ModelInstanceIndex]) -> list[GeometryId]:
-    bodies = [plant.get_body(b) for m in models for b in plant.GetBodyIndices(m)]
-    return [g for body in bodies for g in plant.GetCollisionGeometriesForBody(body)]
 
 
 def _depth(query: QueryObject, boxes: dict, a: GeometryId, b: GeometryId) -> float:

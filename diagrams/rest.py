@@ -62,7 +62,6 @@ class Rest:
         rigid_items = [item for item in items if isinstance(item, RigidItem)]
         # Of links and rigid pieces at once, since one body at a time took a fifth of a run.
         self._links = [body for body, _ in links]
-        self._weights = [9.81 * piece.mass for piece in self._pieces]
         self._rigid = [k for k, item in enumerate(items) if isinstance(item, RigidItem)]
         self._soft = [(k, item) for k, item in enumerate(items) if isinstance(item, SoftItem)]
         self._triangles = {k: (item, item.shape.mesh.boundary()) for k, item in self._soft}
@@ -128,7 +127,7 @@ class Rest:
         forces = self._forces(context) if neighbours else {}
         for i, j in neighbours:
             force = forces.get((i, j), np.zeros(3))
-            carried = speeds[j] > STILL and force[2] > CARRIED * self._weights[i]
+            carried = speeds[j] > STILL and force[2] > CARRIED * self._pieces[i].weight
             awake[i] |= carried or (touched[j] and (was_awake[i] or np.linalg.norm(force) > PRESSED))
         return awake
 

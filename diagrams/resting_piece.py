@@ -14,11 +14,11 @@ import numpy as np
 from pydrake.geometry import GeometryId, SceneGraph
 from pydrake.math import RigidTransform
 from pydrake.multibody.plant import MultibodyPlant
+from pydrake.multibody.tree import UniformGravityFieldElement
 from pydrake.systems.framework import Context
 
 from diagrams.scene import RigidItem
-from diagrams.soft_items import SoftItem, drake_mesh, soft_positions, soft_velocities
-from diagrams.soft_meshes import TetMesh
+from diagrams.soft_items import SoftItem, drake_mesh, soft_mesh, soft_velocities
 
 
 class Piece(Protocol):
@@ -35,8 +35,8 @@ class Piece(Protocol):
         ...
 
     @property
-    def mass(self) -> float:
-        """[kg]."""
+    def weight(self) -> float:
+        """[N]."""
         ...
 
     def speed(self, context: Context, size: float) -> float:
@@ -76,9 +76,9 @@ class SoftPiece:
         return [self.item.cast_id]
 
     @property
-    def mass(self) -> float:
+    def weight(self) -> float:
         """See `Piece`."""
-        return self.item.shape.mass
+        return UniformGravityFieldElement.kDefaultStrength * self.item.shape.mass
 
     def speed(self, context: Context, size: float) -> float:
         """See `Piece`."""
@@ -98,8 +98,7 @@ class SoftPiece:
         """See `Piece`."""
         context = self.plant.GetMyMutableContextFromRoot(root)
         self.plant.deformable_model().Disable(self.item.body_id, context)
-        nodes = soft_positions(self.plant, context, self.item)
-        cast = drake_mesh(TetMesh(nodes, self.item.shape.mesh.tetrahedra), f"{self.item.name}_cast")
+        cast = drake_mesh(soft_mesh(self.plant, context, self.item), f"{self.item.name}_cast")
         geometry = self.scene_graph.GetMyMutableContextFromRoot(root)
         self.scene_graph.ChangeShape(geometry, self.plant.get_source_id(), self.item.cast_id, cast, RigidTransform())
 
@@ -122,9 +121,9 @@ class RigidPiece:
         return self.own
 
     @property
-    def mass(self) -> float:
+    def weight(self) -> float:
         """See `Piece`."""
-        return float(self.item.body.default_mass())
+        return UniformGravityFieldElement.kDefaultStrength * float(self.item.body.default_mass())
 
     def speed(self, context: Context, size: float) -> float:
         """See `Piece`."""

@@ -33,6 +33,8 @@ from pydrake.geometry import (
 from pydrake.multibody.plant import MultibodyPlant
 from pydrake.multibody.tree import ModelInstanceIndex
 
+from diagrams.contacts import collision_shapes
+
 SURROUNDINGS_GRADIENT = 3.0e7
 """g of what stands about [Pa/m]; see above."""
 PAD_GRADIENT = 1.0e7
@@ -61,7 +63,7 @@ def prepare_for_cloth(
     Whether a shape is compliant towards rigid ones stays as it is. Shapes without a thickness (meshes) stay too.
     """
     inspector = scene_graph.model_inspector()
-    links, deep = _geometries(plant, [robot]), _geometries(plant, fallen_into)
+    links, deep = (set(collision_shapes(plant, models)) for models in ([robot], fallen_into))
     for geometry in inspector.GetAllGeometryIds(Role.kProximity):
         if inspector.IsDeformableGeometry(geometry):
             continue
@@ -90,11 +92,6 @@ def hull_of_box(size: np.ndarray) -> Convex:
     corners = [(x, y, z) for x in (-0.5, 0.5) for y in (-0.5, 0.5) for z in (-0.5, 0.5)] * size
     lines = [f"v {x:.9g} {y:.9g} {z:.9g}" for x, y, z in corners] + [f"f {a} {b} {c}" for a, b, c in _FACES]
     return Convex(InMemoryMesh(mesh_file=MemoryFile("\n".join(lines), ".obj", "box.obj")), 1.0)
-
-
-def _geometries(plant: MultibodyPlant, models: list[ModelInstanceIndex]) -> set[GeometryId]:
-    bodies = [plant.get_body(b) for m in models for b in plant.GetBodyIndices(m)]
-    return {g for body in bodies for g in plant.GetCollisionGeometriesForBody(body)}
 
 
 def half_thickness(inspector: SceneGraphInspector, geometry: GeometryId) -> float:

@@ -148,6 +148,11 @@ def soft_positions(plant: MultibodyPlant, context: Context, item: SoftItem) -> n
     return plant.deformable_model().GetPositions(context, item.body_id).T
 
 
+def soft_mesh(plant: MultibodyPlant, context: Context, item: SoftItem) -> TetMesh:
+    """The tetrahedra as they lie now, in W [m]."""
+    return TetMesh(soft_positions(plant, context, item), item.shape.mesh.tetrahedra)
+
+
 def soft_velocities(plant: MultibodyPlant, context: Context, item: SoftItem) -> np.ndarray:
     """Node velocities v_WN in [m/s], shape (N, 3)."""
     return plant.deformable_model().GetVelocities(context, item.body_id).T

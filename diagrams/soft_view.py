@@ -95,8 +95,8 @@ class SoftView(LeafSystem):
     def _changes(self, context: Context) -> list[tuple[int, _Drawn, _Drawn]]:
         """Number of each piece that moved, what is drawn of it, and what is to be.
 
-        Publish and update find the same: Drake publishes at t before it updates at t, and an unrestricted update sees
-        the plant before its step, which is one too where there is cloth (a discrete update comes after it).
+        Publish and update find the same: Drake publishes at t before it updates at t, and where there is cloth the
+        plant's step is an unrestricted update, so that only another of these sees the plant as it was before it.
         """
         query, now = self.GetInputPort("query_object").Eval(context), round(context.get_time() / self._period)
         changes = []
@@ -105,9 +105,10 @@ class SoftView(LeafSystem):
             before = self._before(context, i)
             after = _Drawn(nodes, now, now, RigidTransform())
             if before.frame >= 0:
-                X = _rigid_fit(before.nodes, nodes) if self._recording else RigidTransform()
-                if self._recording and _apart(X, before.nodes, nodes) < _BENT:
-                    after = _Drawn(before.nodes, before.frame, now, X)
+                if self._recording:
+                    X = _rigid_fit(before.nodes, nodes)
+                    if _apart(X, before.nodes, nodes) < _BENT:
+                        after = _Drawn(before.nodes, before.frame, now, X)
                 if _apart(before.X, before.nodes, after.X.multiply(after.nodes.T).T) < _SEEN:
                     continue
             changes.append((i, before, after))

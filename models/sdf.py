@@ -18,8 +18,8 @@ class Material:
 
     friction: float
     """Coefficient of friction [-], static and dynamic alike."""
-    modulus: float | None = None
-    """Hydroelastic modulus [Pa]; None: rigid. One side of each pair is compliant, so that the pressure is defined."""
+    modulus: float
+    """Hydroelastic modulus [Pa]."""
     dissipation: float = 5.0
     """Hunt-Crossley dissipation [s/m]."""
     margin: float = 0.0
@@ -30,9 +30,7 @@ class Material:
     def sdf(self) -> str:
         """The proximity properties as an SDFormat element."""
         kind = (
-            "<drake:rigid_hydroelastic/>"
-            if self.modulus is None
-            else "<drake:compliant_hydroelastic/>"
+            "<drake:compliant_hydroelastic/>"
             f"<drake:hydroelastic_modulus>{self.modulus:g}</drake:hydroelastic_modulus>"
             f"<drake:hydroelastic_margin>{self.margin:g}</drake:hydroelastic_margin>"
         )
