@@ -18,6 +18,8 @@ class Canvas:
     def __init__(self):
         self.moves: list[tuple[str, RigidTransform, float]] = []
         self.meshes: dict[str, np.ndarray] = {}
+        self.kept = np.empty((0, 3))
+        """The surface that the view takes for drawn, at the end."""
         self.shown: list[tuple[str, bool, float]] = []
 
     def SetTriangleColorMesh(self, *, path, vertices, faces, colors):
@@ -37,7 +39,9 @@ def falling_sock(canvas, recording, until, spin=0.0):
     plant, scene_graph = AddMultibodyPlant(MultibodyPlantConfig(time_step=0.005), builder)
     sock = add_soft_item(plant=plant, name="sock", shape=make_shape("sock"), X_WP=RigidTransform([0, 0, 1.0]))
     plant.Finalize()
-    SoftView.AddToBuilder(builder=builder, scene_graph=scene_graph, items=[sock], meshcat=canvas, recording=recording)
+    view = SoftView.AddToBuilder(
+        builder=builder, scene_graph=scene_graph, items=[sock], meshcat=canvas, recording=recording
+    )
     diagram = builder.Build()
     simulator = Simulator(diagram)
     context = plant.GetMyMutableContextFromRoot(simulator.get_mutable_context())
@@ -46,6 +50,9 @@ def falling_sock(canvas, recording, until, spin=0.0):
     plant.deformable_model().SetPositionsAndVelocities(context, sock.body_id, start, turning.T)
     simulator.AdvanceTo(until)
     nodes = plant.deformable_model().GetPositions(plant.GetMyContextFromRoot(simulator.get_context()), sock.body_id).T
+    if isinstance(canvas, Canvas):
+        kept = view.GetMyContextFromRoot(simulator.get_context()).get_discrete_state(0).value().reshape(-1, 3)
+        canvas.kept = sock.shape.surface.positions(kept)
     return sock.shape.surface.positions(nodes)
 
 
@@ -54,6 +61,12 @@ def test_the_surface_is_drawn_where_the_solid_is():
     surface = falling_sock(canvas, recording=False, until=0.2)
     assert set(canvas.meshes) == {"soft/sock"}
     np.testing.assert_allclose(canvas.meshes["soft/sock"], surface, atol=5e-3 + 1e-3)
+
+
+def test_what_it_takes_for_drawn_is_what_it_drew():
+    canvas = Canvas()
+    falling_sock(canvas, recording=True, until=0.25, spin=30.0)
+    np.testing.assert_array_equal(canvas.kept, list(canvas.meshes.values())[-1])
 
 
 def test_a_recording_moves_what_does_not_bend_and_redraws_what_does():
