@@ -24,7 +24,7 @@ from diagrams.scene import RigidItem
 from diagrams.shared_autonomy import SharedAutonomy, build_shared_autonomy
 from diagrams.soft_items import soft_positions
 from geosacs_drake.options import RunOptions
-from geosacs_drake.run import prepare_canal
+from geosacs_drake.prepare_canal import prepare_canal
 from geosacs_drake.simulate import simulate
 from geosacs_drake.summary import summarize
 

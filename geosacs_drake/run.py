@@ -4,31 +4,24 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Sequence
-from pathlib import Path
 from typing import NoReturn
 
-import numpy as np
-from scipy.spatial.transform import Rotation
 from tqdm import tqdm
 
-from canal.demonstration import load_demonstration, write_npz
-from canal.learning import LearningOptions, learn_canal
-from canal.refinement import SupportPlane
-from canal.retargeting import retarget
-from canal.surface import CanalSurface
+from canal.demonstration import write_npz
 from diagrams.joystick_recording import load_recording
 from diagrams.layout import base_pose
 from diagrams.meshcat_joystick import CONTROLS
 from diagrams.meshcat_recording import Recording
 from diagrams.meshcat_server import leave, start_meshcat
 from diagrams.run_log import named_signals
-from diagrams.scenario import Retarget, Scenario, load_scenario, with_items
+from diagrams.scenario import load_scenario, with_items
 from diagrams.shared_autonomy import build_shared_autonomy
 from geosacs_drake.command_line import ExitStatus, end, parse_options
 from geosacs_drake.options import PEOPLE, RunOptions
+from geosacs_drake.prepare_canal import prepare_canal
 from geosacs_drake.simulate import Progress, simulate
 from geosacs_drake.summary import describe, summarize, write_summary
-from models import MODELS
 
 
 def main(task: str, arguments: Sequence[str] | None = None) -> NoReturn:
@@ -86,41 +79,6 @@ def run(options: RunOptions, task: str) -> ExitStatus:
         system.video.save()
     status = ExitStatus.DONE if summary["success"] else ExitStatus.NOT_DONE
     leave(status, meshcat)
-
-
-def prepare_canal(scenario: Scenario, options: RunOptions) -> CanalSurface:
-    """The canal that the options or the scenario name: loaded, or learned; moved to where the task is now."""
-    planes = tuple(SupportPlane(tuple(p.normal), p.offset) for p in scenario.support_planes)  # type: ignore[arg-type]
-    canal = _load_or_learn(scenario, options, planes)
-    if scenario.retarget != Retarget():
-        to = scenario.retarget
-        pick = _moved(canal, 0, to.pick, to.pick_yaw_deg)
-        place = _moved(canal, -1, to.place, to.place_yaw_deg)
-        canal = retarget(canal, pick, place, support_planes=planes or None)
-    for warning in canal.warnings:
-        print(f"canal: {warning}", file=sys.stderr)
-    return canal
-
-
-def _moved(canal: CanalSurface, disk: int, pose: list[float], yaw_deg: float) -> np.ndarray:
-    """The pose of an end of the canal with what is given in its place, turned about the vertical. Shape (7,)."""
-    own = np.concatenate([canal.directrix[disk], canal.orientations[disk]])
-    own[: len(pose)] = pose
-    turn = Rotation.from_euler("z", yaw_deg, degrees=True)
-    own[3:] = (turn * Rotation.from_quat(own[3:], scalar_first=True)).as_quat(scalar_first=True)
-    return own
-
-
-def _load_or_learn(scenario: Scenario, options: RunOptions, planes: tuple[SupportPlane, ...]) -> CanalSurface:
-    if options.canal is not None:
-        return CanalSurface.load(options.canal)
-    if not options.demos and scenario.canal is not None:
-        return CanalSurface.load(scenario.resolve(scenario.canal, MODELS / "demonstrations"))
-    paths: list[Path] = list(options.demos) or [
-        scenario.resolve(name, MODELS / "demonstrations") for name in scenario.demonstrations
-    ]
-    learning = LearningOptions(support_planes=planes, **scenario.learning)  # type: ignore[arg-type]
-    return learn_canal([load_demonstration(path) for path in paths], learning)
 
 
 def operator_of(options: RunOptions):

@@ -7,7 +7,7 @@ from benchmarks.bench_world import Watch
 from diagrams.scenario import load_scenario, with_items
 from diagrams.shared_autonomy import build_shared_autonomy
 from geosacs_drake.options import RunOptions
-from geosacs_drake.run import prepare_canal
+from geosacs_drake.prepare_canal import prepare_canal
 from geosacs_drake.simulate import simulate
 
 

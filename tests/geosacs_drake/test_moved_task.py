@@ -9,7 +9,7 @@ from diagrams.lio_station import START_POSTURE
 from diagrams.scenario import Retarget, load_scenario
 from diagrams.start_posture import find_start_posture
 from geosacs_drake.options import RunOptions
-from geosacs_drake.run import prepare_canal
+from geosacs_drake.prepare_canal import prepare_canal
 
 
 @pytest.fixture(scope="module")

@@ -10,7 +10,8 @@ from canal.demonstration import Demonstration, save_demonstration
 from canal.learning import learn_canal
 from diagrams.scenario import load_scenario
 from geosacs_drake.options import RunOptions
-from geosacs_drake.run import main, prepare_canal
+from geosacs_drake.prepare_canal import prepare_canal
+from geosacs_drake.run import main
 from geosacs_drake.summary import WALL_CLOCK_KEYS
 from models import MODELS
 
