@@ -3,15 +3,13 @@
 from __future__ import annotations
 
 import os
-import tempfile
-import zipfile
-from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 
 from canal.errors import InputError
+from canal.files import read_npz, write_and_rename, write_npz
 
 SAMPLE_RATE_HZ = 20.0  # the paper records at 20 Hz; assumed where a file has no time stamps
 MIN_SAMPLES = 4
@@ -120,29 +118,6 @@ def load_demonstration(path: str | os.PathLike) -> Demonstration:
     return _load_csv(path) if path.suffix.lower() == ".csv" else _load_npz(path)
 
 
-def read_npz(path: Path, what: str) -> dict[str, np.ndarray]:
-    """All arrays of an `.npz`, never unpickling.
-
-    Args:
-        path: the file.
-        what: what it should be, for the message.
-
-    Raises:
-        InputError: it cannot be read as such.
-    """
-    try:
-        with np.load(path, allow_pickle=False) as archive:
-            if not isinstance(archive, np.lib.npyio.NpzFile):
-                raise InputError(f"{path}: holds one bare array; {what} is an .npz")
-            return {key: archive[key] for key in archive.files}
-    except InputError:
-        raise
-    except FileNotFoundError:
-        raise InputError(f"{path}: no such file; give {what} as .npz") from None
-    except (OSError, ValueError, EOFError, zipfile.BadZipFile, KeyError):
-        raise InputError(f"{path}: cannot be read as .npz without pickles; {what} is an .npz of plain arrays") from None
-
-
 def _load_npz(path: Path) -> Demonstration:
     arrays = read_npz(path, "a demonstration")
     for key in ("position", "orientation"):
@@ -179,27 +154,3 @@ def save_demonstration(path: str | os.PathLike, demonstration: Demonstration) ->
         write_and_rename(path, lambda stream: stream.write(body.encode()))
     else:
         write_npz(path, position=d.position, orientation=d.orientation, time=d.time)
-
-
-def write_npz(path: str | os.PathLike, **arrays: np.ndarray) -> None:
-    """Write arrays to an `.npz`: a reader sees the old file or the whole new one, never half of it."""
-    write_and_rename(Path(path), lambda stream: np.savez_compressed(stream, allow_pickle=False, **arrays))
-
-
-def write_and_rename(path: Path, write: Callable) -> None:
-    """Call `write(stream)` on a temporary binary file beside `path`, then rename it to `path`.
-
-    Raises:
-        InputError: the folder does not exist or cannot be written to.
-    """
-    temporary = None
-    try:
-        handle, temporary = tempfile.mkstemp(prefix=f".{path.name}.", dir=path.parent or ".")
-        with os.fdopen(handle, "wb") as stream:
-            write(stream)
-        os.chmod(temporary, 0o644)
-        os.replace(temporary, path)
-    except OSError as error:
-        if temporary and os.path.exists(temporary):
-            os.unlink(temporary)
-        raise InputError(f"{path}: cannot be written ({error.strerror}); choose another place") from None

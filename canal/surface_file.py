@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from canal.demonstration import read_npz, write_npz
 from canal.errors import InputError
+from canal.files import read_npz, write_npz
 from canal.refinement import SupportPlane
 
 if TYPE_CHECKING:

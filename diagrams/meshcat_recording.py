@@ -6,7 +6,7 @@ from pathlib import Path
 
 from pydrake.geometry import Meshcat
 
-from canal.demonstration import write_and_rename
+from canal.files import write_and_rename
 
 FRAMES_PER_SECOND = 32.0
 """As often as the pictures are drawn."""

@@ -9,8 +9,8 @@ from pathlib import Path
 
 import numpy as np
 
-from canal.demonstration import write_and_rename
 from canal.errors import InputError
+from canal.files import write_and_rename
 from canal.surface import CanalSurface
 from diagrams.canal_meshes import TriangleMesh, canal_rings, canal_skin, dashes, merge, tube
 

@@ -13,8 +13,8 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from canal.demonstration import write_and_rename
 from canal.errors import InputError
+from canal.files import write_and_rename
 from canal.frames import bishop_frames
 from canal.quality import angles
 from canal.surface import CanalSurface

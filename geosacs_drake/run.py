@@ -8,7 +8,7 @@ from typing import NoReturn
 
 from tqdm import tqdm
 
-from canal.demonstration import write_npz
+from canal.files import write_npz
 from diagrams.joystick_recording import load_recording
 from diagrams.layout import base_pose
 from diagrams.meshcat_joystick import CONTROLS

@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from canal.demonstration import write_and_rename
+from canal.files import write_and_rename
 from canal.navigation import FIELD_NAMES
 from diagrams.ik_options import IkStatus
 from diagrams.ik_system import IkStatusField
