@@ -13,6 +13,9 @@ from diagrams.ik_options import IkOptions
 from diagrams.ik_solver import IkSolver
 
 CONTROL_PERIOD = 0.01  # [s]
+AT_REST = 1e-8
+"""Of a step [rad] that is smaller in every joint nothing is done: the posture is the best one already, to 10 nm at the
+tool, and the arm stands exactly still instead of creeping along the flat of the objective for ever."""
 
 
 class IkStatusField(enum.IntEnum):
@@ -84,7 +87,10 @@ class OrientationWeightedIk(LeafSystem):
         target: Any = self._target_port.Eval(context)
         weight: Any = self._weight_port.Eval(context)
         result = self._solver.solve(target, weight, q_prev, self._period, command[n:])
-        updates.set_value(self._command, np.concatenate((result.q, (result.q - q_prev) / self._period)))
+        step = result.q - q_prev
+        still = bool(np.abs(step).max() < AT_REST)
+        moved = (q_prev, np.zeros(n)) if still else (result.q, step / self._period)
+        updates.set_value(self._command, np.concatenate(moved))
         updates.set_value(
             self._status,
             np.array(

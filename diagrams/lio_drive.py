@@ -15,6 +15,10 @@ CLOSE_TARGET = -0.1
 GRIPPER_SPEED = 1.047
 """[rad/s] (SPEC section 6)."""
 PERIOD = 0.02
+CLEAR_OF_STOPS = 1e-4
+"""The drives aim no nearer to a joint's stop than this [rad]. Drake computes a stop as a nearly rigid constraint once
+the joint is nearer to it than it moves in two steps; at rest, with velocities of 1e-9 to 1e-14 rad/s and nothing else
+that carries momentum, its SAP solver then does not converge. A tenth of a milliradian off, it never has to."""
 
 
 class LioDrive(LeafSystem):
@@ -29,9 +33,18 @@ class LioDrive(LeafSystem):
     A desired state that is not finite, which the IK never gives, holds the last one that was.
     """
 
-    def __init__(self, q0: np.ndarray) -> None:
-        """Start at the arm posture `q0` (6,) with the gripper open."""
+    def __init__(self, q0: np.ndarray, stops: tuple[np.ndarray, np.ndarray] | None = None) -> None:
+        """Start at the arm posture `q0` (6,) with the gripper open.
+
+        Args:
+            q0: angles [rad].
+            stops: lowest and highest angle of each arm joint [rad], two of (6,); None for none.
+        """
         super().__init__()
+        low, high = stops if stops is not None else (np.full(ARM, -np.inf), np.full(ARM, np.inf))
+        self._low = np.array((*(low + CLEAR_OF_STOPS), -np.inf))
+        self._high = np.array((*(high - CLEAR_OF_STOPS), OPEN_ANGLE - CLEAR_OF_STOPS))
+        self._q0 = np.array((*q0, OPEN_ANGLE))
         self._desired = self.DeclareVectorInputPort("desired_state", 2 * ARM)
         self._command = self.DeclareVectorInputPort("gripper_command", 1)
         # The gripper's target and its rate, then the arm's last posture.
@@ -57,4 +70,10 @@ class LioDrive(LeafSystem):
         desired = self._desired.Eval(context).tolist()
         if not all(map(math.isfinite, desired)):
             desired = q + [0.0] * ARM
-        output.set_value(np.array((*desired[:ARM], target, *desired[ARM:], rate)))
+        positions = np.maximum(self._low, np.minimum(self._high, (*desired[:ARM], target)))
+        output.set_value(np.array((*positions, *desired[ARM:], rate)))
+
+    def start_positions(self) -> np.ndarray:
+        """Where the drives hold the model before any command: arm and both fingers [rad], (8,)."""
+        positions = np.clip(self._q0, self._low, self._high)
+        return np.append(positions, positions[-1])

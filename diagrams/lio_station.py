@@ -14,8 +14,8 @@ from diagrams.contact_sensor import ContactSensor
 from diagrams.goals import Goal
 from diagrams.item_sensor import ItemSensor
 from diagrams.layout import make_goals
-from diagrams.lio_drive import ARM, OPEN_ANGLE, LioDrive
-from diagrams.lio_sensors import JOINTS, LioSensor
+from diagrams.lio_drive import ARM, LioDrive
+from diagrams.lio_sensors import LioSensor
 from diagrams.overlaps import check_overlaps
 from diagrams.scenario import Contact, Scenario
 from diagrams.scene import Scene, add_scene
@@ -74,9 +74,10 @@ class LioStation(Diagram):
             machine = self.scene.things.get("machine", [])
             prepare_for_cloth(plant=plant, scene_graph=scene_graph, robot=lio, fallen_into=machine)
         plant.Finalize()
-        plant.SetDefaultPositions(lio, checked_posture(plant, lio, q0))
+        stops = arm_stops(plant, lio)
+        drive = builder.AddNamedSystem("lio_drive", LioDrive(checked_posture(q0, stops), stops))
+        plant.SetDefaultPositions(lio, drive.start_positions())
 
-        drive = builder.AddNamedSystem("lio_drive", LioDrive(np.asarray(q0, dtype=float)))
         sensor = builder.AddNamedSystem("lio_sensor", LioSensor(plant, lio, self.scene.X_WB))
         items = builder.AddNamedSystem("item_sensor", ItemSensor(self.scene))
         touch = builder.AddNamedSystem("contact_sensor", ContactSensor(plant, scene_graph, self.scene))
@@ -146,8 +147,17 @@ def set_drives(plant: MultibodyPlant, lio: ModelInstanceIndex) -> None:
     grip.set_effort_limit(GRIP_EFFORT)
 
 
-def checked_posture(plant: MultibodyPlant, lio: ModelInstanceIndex, q0: np.ndarray) -> np.ndarray:
-    """The positions of the model: arm at `q0` (6,), gripper open.
+def arm_stops(plant: MultibodyPlant, lio: ModelInstanceIndex) -> tuple[np.ndarray, np.ndarray]:
+    """Lowest and highest angle of each joint of the arm [rad], two of (6,)."""
+    joints = [plant.GetJointByName(f"lio_joint_{k + 1}", lio) for k in range(ARM)]
+    return (
+        np.array([joint.position_lower_limit() for joint in joints]),
+        np.array([joint.position_upper_limit() for joint in joints]),
+    )
+
+
+def checked_posture(q0: np.ndarray, stops: tuple[np.ndarray, np.ndarray]) -> np.ndarray:
+    """The arm's posture `q0` (6,) [rad] as it was given, within `stops`.
 
     Raises:
         InputError: a joint is beyond its limits, or not finite.
@@ -155,11 +165,7 @@ def checked_posture(plant: MultibodyPlant, lio: ModelInstanceIndex, q0: np.ndarr
     q0 = np.asarray(q0, dtype=float)
     if q0.shape != (ARM,) or not np.isfinite(q0).all():
         raise InputError(f"start posture {q0.tolist()} is not {ARM} finite numbers; give one angle a joint in radians")
-    for k, value in enumerate(q0):
-        joint = plant.GetJointByName(f"lio_joint_{k + 1}", lio)
-        low, high = joint.position_lower_limit(), joint.position_upper_limit()
+    for k, (value, low, high) in enumerate(zip(q0, *stops, strict=True)):
         if not low <= value <= high:
             raise InputError(f"start posture: joint {k + 1} at {value:.3f} rad is not within {low:.3f} .. {high:.3f}")
-    positions = np.full(JOINTS, OPEN_ANGLE)
-    positions[:ARM] = q0
-    return positions
+    return q0
