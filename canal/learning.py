@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from typing import Annotated
 
 import numpy as np
+from pydantic import AfterValidator, Field
 
 from canal import orientation as orient
 from canal.alignment import BAND, WARP_SMOOTHING, align, evenly_moving, sample
@@ -14,6 +15,7 @@ from canal.demonstration import Demonstration
 from canal.ellipses import FEWEST_FOR_ELLIPSES, disk_ellipses
 from canal.errors import InputError
 from canal.frames import correction_frames, perpendicular
+from canal.options import options
 from canal.refinement import SupportPlane, dips, hold_at_planes
 from canal.relaxation import MAX_TILT, crossings, relax_normals, reversals, tilts
 from canal.splines import arc_length, fit_spline, knots_every, rotation_curve, uniform_in_arc
@@ -27,7 +29,19 @@ WIDE_SPREAD = 2 * math.sin(math.radians(45.0) / 4)  # σ of 45° to either side:
 MAX_X_TURN = math.radians(6.0)  # of x about n between neighbours: a thumb follows 6° in 5 mm
 
 
-@dataclass(frozen=True)
+def _odd(n_disks: int) -> int:
+    if n_disks % 2 == 0:
+        raise InputError("give an odd number, so that home is a disk")
+    return n_disks
+
+
+def _direction(vector: tuple[float, float, float]) -> tuple[float, float, float]:
+    if math.hypot(*vector) < 1e-9:
+        raise InputError("give a direction, not zero")
+    return vector
+
+
+@options("learning", frozen=True)
 class LearningOptions:
     """How a canal is learned. The defaults are what was measured to work on recorded and hard synthetic data.
 
@@ -46,33 +60,19 @@ class LearningOptions:
         alpha, beta: of the orientation weight.
     """
 
-    step: float = 0.1
+    step: Annotated[float, Field(ge=0.005, le=0.5)] = 0.1
     interpolate: bool = False
-    band: float = BAND
-    warp_smoothing: float = WARP_SMOOTHING
-    margin: float = 0.0
+    band: Annotated[float, Field(ge=0.01, le=1)] = BAND
+    warp_smoothing: Annotated[float, Field(ge=0, le=0.5)] = WARP_SMOOTHING
+    margin: Annotated[float, Field(ge=0, le=1)] = 0.0
     contain_raw: bool = False
     ellipse: bool = False
-    n_disks: int | None = None
-    x_global: tuple[float, float, float] = (1.0, 0.0, 0.0)
-    y_window: int = 1
+    n_disks: Annotated[int, Field(ge=3, le=10_001), AfterValidator(_odd)] | None = None
+    x_global: Annotated[tuple[float, float, float], AfterValidator(_direction)] = (1.0, 0.0, 0.0)
+    y_window: Annotated[int, Field(ge=1, le=1000)] = 1
     support_planes: tuple[SupportPlane, ...] = ()
-    alpha: float = orient.ALPHA
-    beta: float = orient.BETA
-
-    def __post_init__(self):
-        for name, low, high in (("step", 0.005, 0.5), ("band", 0.01, 1.0), ("warp_smoothing", 0.0, 0.5)):
-            if not low <= getattr(self, name) <= high:
-                raise InputError(f"{name} is {getattr(self, name):g}; it must lie in [{low:g}, {high:g}]")
-        if not (math.isfinite(self.margin) and 0 <= self.margin <= 1):
-            raise InputError(f"margin is {self.margin:g} m; it must lie in [0, 1]")
-        if self.n_disks is not None and (self.n_disks < 3 or self.n_disks % 2 == 0):
-            raise InputError(f"n_disks is {self.n_disks}; it must be odd and at least 3, so that home is a disk")
-        if self.y_window < 1:
-            raise InputError(f"y_window is {self.y_window}; it must be at least 1")
-        size = np.linalg.norm(self.x_global)
-        if not (math.isfinite(size) and size > 1e-9):
-            raise InputError(f"x_global is {self.x_global}; give a finite direction, not zero")
+    alpha: Annotated[float, Field(ge=0, le=100)] = orient.ALPHA
+    beta: Annotated[float, Field(ge=-10, le=10)] = orient.BETA
 
 
 def learn_canal(

@@ -5,12 +5,14 @@ along the canal, or, while the stick is off centre, on the disk alone. No clock 
 """
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import replace
+from typing import Annotated, Literal
 
 import numpy as np
+from pydantic import Field
 
-from canal.errors import InputError
 from canal.navigation_state import FIELD_NAMES, Leg, NavigationState
+from canal.options import NotNegative, Positive, Share, options
 from canal.surface import CanalSurface
 
 __all__ = [
@@ -32,50 +34,32 @@ MIN_RADIUS = 1e-9
 _HELD = ("held_gripper", "held_reverse", "held_start", "held_stop", "held_alarm")
 
 
-@dataclass
+@options("navigation")
 class NavigationOptions:
     """How a canal is travelled. Times in seconds, speeds relative to the demonstrations'."""
 
-    speed_scale: float = 1.0
+    speed_scale: Annotated[float, Field(gt=0, le=100)] = 1.0
     """1: a whole pass takes the mean moving time of the demonstrations; 2: half of it."""
-    delta: float = 150.0
+    delta: Annotated[float, Field(ge=1)] = 150.0
     """Sensitivity of the stick, δ of paper Table I: full stick moves 20/δ m/s."""
-    dead_zone: float = 0.1
+    dead_zone: Share = 0.1
     """A stick shorter than this is taken as centred."""
-    eta_f: float = 0.0
+    eta_f: Share = 0.0
     """Final ratio η_f of the homeward legs: 0 converges to the directrix, 1 diverges to the wall."""
-    decay: str = "leg"
+    decay: Literal["leg", "paper"] = "leg"
     """`leg`: η = η_f + (η_0 - η_f) exp(-a u²), u the part of the leg travelled. `paper`: exp(-λ·disks), Eq. in IV-C."""
-    decay_a: float = 11.7
+    decay_a: Positive = 11.7
     """a of the default decay: what the robot's code comes to over 216 disks."""
-    decay_lambda: float = 5e-4
+    decay_lambda: NotNegative = 5e-4
     """λ of paper Table I, per disk; for `decay: paper`."""
     wait_at_ends: bool = True
     """At pick and place, wait for the operator: a grip, a release or a reversal goes on."""
-    end_zone: float = 0.1
+    end_zone: Share = 0.1
     """Last part of an outward leg in which a grasp (a release) counts as made at pick (at place) and sends home."""
-    gripper_pause_s: float = 0.25
+    gripper_pause_s: NotNegative = 0.25
     """Shortest pause after the gripper button; it lasts while the fingers move."""
-    gripper_pause_limit_s: float = 2.0
+    gripper_pause_limit_s: Positive = 2.0
     """Longest pause: fingers that never come to rest do not hold the arm up."""
-
-    def __post_init__(self) -> None:
-        self.validate()
-
-    def validate(self) -> None:
-        """Check all values; a reader of YAML, which fills the fields one by one, calls it once more.
-
-        Raises:
-            InputError: a value is out of bounds.
-        """
-        for name in ("speed_scale", "delta", "decay_a", "gripper_pause_limit_s"):
-            if not getattr(self, name) > 0 or not math.isfinite(getattr(self, name)):
-                raise InputError(f"navigation.{name} is {getattr(self, name)}; give a number above 0")
-        for name in ("eta_f", "dead_zone", "end_zone"):
-            if not 0 <= getattr(self, name) <= 1:
-                raise InputError(f"navigation.{name} is {getattr(self, name)}; give a number in [0, 1]")
-        if self.decay not in ("leg", "paper"):
-            raise InputError(f"navigation.decay is {self.decay!r}; give 'leg' or 'paper'")
 
 
 def initial_state(canal: CanalSurface) -> NavigationState:

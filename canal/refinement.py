@@ -3,16 +3,16 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 
 import numpy as np
 
 from canal.errors import InputError
+from canal.options import Coordinate, options
 
 APPROACH = math.cos(math.radians(45.0))  # |e_T · m| from which on a path goes towards a plane, not along it
 
 
-@dataclass(frozen=True)
+@options("support plane", frozen=True)
 class SupportPlane:
     """The half-space in which the TCP may be: m · p ≥ offset, in B.
 
@@ -25,18 +25,14 @@ class SupportPlane:
     """
 
     normal: tuple[float, float, float]
-    offset: float
+    offset: Coordinate
 
-    def __post_init__(self):
-        m = np.asarray(self.normal, dtype=float)
-        size = float(np.linalg.norm(m)) if m.shape == (3,) else math.nan
-        if not (math.isfinite(size) and size > 1e-9 and math.isfinite(self.offset)):
-            raise InputError(
-                f"support plane {self.normal}, {self.offset}: give a finite normal of 3 numbers, not zero, and an "
-                "offset in metres"
-            )
-        object.__setattr__(self, "normal", tuple((m / size).tolist()))
-        object.__setattr__(self, "offset", float(self.offset) / size)
+    def __post_init__(self) -> None:
+        size = math.hypot(*self.normal)
+        if not size > 1e-9:
+            raise InputError(f"the normal is {self.normal}; give a direction, not zero")
+        object.__setattr__(self, "normal", tuple((np.asarray(self.normal) / size).tolist()))
+        object.__setattr__(self, "offset", self.offset / size)
 
     def height(self, points: np.ndarray) -> np.ndarray:
         """Signed distance of points (..., 3) from the plane, positive where they may be, [m]."""

@@ -1,39 +1,30 @@
 """The monitor: the study's measures, success, safety, and the end of a run with a reason (SPEC section 7)."""
 
 import math
-from dataclasses import dataclass
 
 import numpy as np
 from pydrake.math import RigidTransform
 from pydrake.systems.framework import Context, DiagramBuilder, DiscreteValues, EventStatus, LeafSystem
 
-from canal.errors import InputError
 from canal.navigation import FIELD_NAMES, NavigationState, phase
+from canal.options import NotNegative, Positive, Share, options
 from canal.surface import CanalSurface
 from diagrams.goals import Goal
 
 
-@dataclass
+@options("monitor")
 class MonitorOptions:
     """What counts as done, and as dangerous."""
 
-    rest_speed: float = 0.05
+    rest_speed: Positive = 0.05
     """[m/s] A thing slower than this is at rest: crumpled clothes go on breathing."""
-    held_distance_m: float = 0.16
+    held_distance_m: NotNegative = 0.16
     """A thing nearer to a closed gripper than this is still held."""
-    force_limit_n: float = 150.0
+    force_limit_n: Positive = 150.0
     """Contact force between robot and surroundings above which the motion stops: ISO/TS 15066's bound for transient
     contact with the back of the hand is 280 N, quasi-static 140 N; a care robot stays about the latter."""
-    clear_phase: float = 0.5
+    clear_phase: Share = 0.5
     """|d| below which the robot has left the goal, so that the run can end."""
-
-    def __post_init__(self) -> None:
-        self.validate()
-
-    def validate(self) -> None:
-        """Check all values (see `NavigationOptions.validate`)."""
-        if not self.force_limit_n > 0:
-            raise InputError(f"monitor.force_limit_n is {self.force_limit_n}; give a force above 0 N")
 
 
 class Monitor(LeafSystem):

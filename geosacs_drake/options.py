@@ -1,16 +1,18 @@
 """Options of a run, the same for both tasks (DESIGN, "What a person types")."""
 
-from dataclasses import dataclass
 from pathlib import Path
-from typing import Literal
+from typing import Annotated, Literal
+
+from pydantic import Field
 
 from canal.errors import InputError
+from canal.options import COMMAND_LINE, options
 
 PEOPLE = ("gamepad", "keyboard")
 """Operators that need a browser."""
 
 
-@dataclass(frozen=True)
+@options(COMMAND_LINE, frozen=True)
 class RunOptions:
     """Load a washing machine, or move things from table to table, by shared autonomy on a canal."""
 
@@ -19,11 +21,11 @@ class RunOptions:
     whoever moves a stick or presses a key takes over."""
     headless: bool = False
     """Without a browser, as fast as it goes, with a progress bar."""
-    realtime_rate: float | None = None
+    realtime_rate: Annotated[float, Field(ge=0, lt=1e6)] | None = None
     """Simulated over real time; 0 for as fast as possible. Default: 1 in a browser, 0 headless."""
-    seed: int = 0
+    seed: Annotated[int, Field(ge=0, lt=2**63)] = 0
     """Draws where things lie, and the simulated operator's errors."""
-    duration: float = 900.0
+    duration: Annotated[float, Field(gt=0, lt=1e6)] = 900.0
     """Longest simulated time [s]; what is not done by then is not done."""
     items: Literal["soft", "rigid"] | None = None
     """Soft clothes (finite elements) or rigid bodies. Default: as the scenario says; soft in laundry."""
@@ -51,12 +53,6 @@ class RunOptions:
             raise InputError("--demos and --canal exclude each other: give one of them")
         if len(self.demos) == 1:
             raise InputError("--demos got one file; a canal needs at least two demonstrations")
-        if not 0 < self.duration < 1e6:
-            raise InputError(f"--duration is {self.duration:g}; give seconds above 0")
-        if self.realtime_rate is not None and not 0 <= self.realtime_rate < 1e6:
-            raise InputError(f"--realtime-rate is {self.realtime_rate:g}; give 0 (as fast as possible) or more")
-        if self.seed < 0:
-            raise InputError(f"--seed is {self.seed}; give 0 or more")
         for name in ("summary", "log", "record", "video"):
             path = getattr(self, name)
             if path is not None and not path.parent.is_dir():

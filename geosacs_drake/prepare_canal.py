@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import sys
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 from scipy.spatial.transform import Rotation
 
 from canal.demonstration import load_demonstration
-from canal.learning import LearningOptions, learn_canal
+from canal.learning import learn_canal
 from canal.refinement import SupportPlane
 from canal.retargeting import retarget
 from canal.surface import CanalSurface
@@ -20,7 +21,7 @@ from models import MODELS
 
 def prepare_canal(scenario: Scenario, options: RunOptions) -> CanalSurface:
     """The canal that the options or the scenario name: loaded, or learned; moved to where the task is now."""
-    planes = tuple(SupportPlane(tuple(p.normal), p.offset) for p in scenario.support_planes)  # type: ignore[arg-type]
+    planes = tuple(scenario.support_planes)
     canal = _load_or_learn(scenario, options, planes)
     if scenario.retarget != Retarget():
         to = scenario.retarget
@@ -49,5 +50,5 @@ def _load_or_learn(scenario: Scenario, options: RunOptions, planes: tuple[Suppor
     paths: list[Path] = list(options.demos) or [
         scenario.resolve(name, MODELS / "demonstrations") for name in scenario.demonstrations
     ]
-    learning = LearningOptions(support_planes=planes, **scenario.learning)  # type: ignore[arg-type]
+    learning = replace(scenario.learning, support_planes=scenario.learning.support_planes + planes)
     return learn_canal([load_demonstration(path) for path in paths], learning)

@@ -1,6 +1,7 @@
 """The solver on ordinary and on the worst of arguments: optimal, finite, within every bound, continuous."""
 
 import itertools
+import math
 
 import numpy as np
 import pytest
@@ -257,12 +258,14 @@ def test_soft_limits_lie_inside_the_models() -> None:
 @pytest.mark.parametrize(
     ("options", "message"),
     [
-        (IkOptions(soft_limit_margin=4.0), "soft_limit_margin 4"),
-        (IkOptions(speed_limits=[1.0]), "6 positive values"),
-        (IkOptions(acceleration_limits=[0.0] * 6), "6 positive values"),
-        (IkOptions(axis_weights=[1.0, -1.0, 1.0]), "three finite factors"),
+        ({"soft_limit_margin": 4.0}, "soft_limit_margin 4"),
+        ({"soft_limit_margin": -0.2}, r"ik\.soft_limit_margin is -0\.2; give a number of 0 or more"),
+        ({"speed_limits": [1.0]}, "6 positive values"),
+        ({"acceleration_limits": [0.0] * 6}, r"ik\.acceleration_limits\[0\] is 0\.0; give a number above 0"),
+        ({"axis_weights": [1.0, -1.0, 1.0]}, r"ik\.axis_weights\[1\] is -1\.0"),
+        ({"position_weight": math.nan}, r"ik\.position_weight is nan; give a finite number"),
     ],
 )
-def test_options_that_cannot_be_used_are_refused(options: IkOptions, message: str) -> None:
+def test_options_that_cannot_be_used_are_refused(options: dict, message: str) -> None:
     with pytest.raises(InputError, match=message):
-        IkSolver(lio_plant(), TCP, options)
+        IkSolver(lio_plant(), TCP, IkOptions(**options))
