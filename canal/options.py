@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import reprlib
+import textwrap
 import typing
 from collections.abc import Callable, Sequence
 from typing import Annotated, Any, dataclass_transform
@@ -114,7 +115,7 @@ def short(value: object) -> str:
         text = _SHORT.repr(value)
     except ValueError:  # an integer of more digits than Python prints
         text = "a number of too many digits"
-    return " ".join(text.split())
+    return textwrap.shorten(" ".join(text.split()), 120, placeholder=" ...")
 
 
 _WANTED = {
