@@ -73,8 +73,8 @@ def test_laws_of_a_canal_from_any_hands(demonstrations):
     assert 200 <= canal.n_disks <= 1001
     assert (canal.orientation_weights > 0).all()
     assert canal.orientation_weights.max() <= np.exp(9 * 0.3)
-    # Home is half of the arc, within the chord's error of the arc.
-    assert canal.arc[canal.home_disk] == pytest.approx(canal.length / 2, rel=1e-3)
+    # Home is half of the arc of the curve; a chord across a cusp is shorter than its arc by up to a disk's spacing.
+    assert canal.arc[canal.home_disk] == pytest.approx(canal.length / 2, abs=canal.length / (canal.n_disks - 1) / 2)
     assert quality.end_share_max <= 1.15
     # Ten natural cubics cut a full turn of 0.3 m short by up to 5 mm; tasks have no such turns at their lowest.
     allowed = 0.001 if demonstrations[0].name.startswith("pick_and_place") else 0.005
