@@ -4,7 +4,7 @@ PYTHONS := python3.13 python3.12 python3
 PY := .venv/bin/python
 ARGS ?=
 
-.PHONY: setup laundry relocation test lint clean
+.PHONY: setup laundry relocation test lint acceptance clean
 
 setup: .venv/.installed
 
@@ -30,6 +30,11 @@ lint: setup
 	$(PY) -m ruff check .
 	$(PY) -m ruff format --check .
 	$(PY) -m mypy
+
+# What the tests are too short for, in under half an hour on two cores; `make acceptance ARGS="--list"`.
+acceptance: setup
+	$(PY) -m pip install --quiet --disable-pip-version-check -c constraints.txt -e ".[bench]"
+	$(PY) -m benchmarks.acceptance $(ARGS)
 
 # `make bench-NAME` runs benchmarks/bench_NAME.py, with the rivals in an extra of their own.
 bench-%: setup

@@ -9,9 +9,10 @@ import argparse
 import math
 import multiprocessing
 import time
+from collections.abc import Callable
 from concurrent.futures import ProcessPoolExecutor
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from pydrake.systems.framework import Context
@@ -26,7 +27,7 @@ from diagrams.soft_items import soft_positions
 from geosacs_drake.options import RunOptions
 from geosacs_drake.prepare_canal import prepare_canal
 from geosacs_drake.simulate import simulate
-from geosacs_drake.summary import summarize
+from geosacs_drake.summary import RunResult, summarize
 
 TICK_S = 0.01
 HALF_S = 0.5
@@ -123,8 +124,27 @@ class Watch:
         return X_WT.inverse().multiply(points.T).T
 
 
-def measure(name: str, kind: str | None, seed: int, orientation: bool = True) -> dict[str, tuple[float, str]]:
-    """One run: metrics with their units. Without `orientation` its weight is zero, and no contact stops the robot."""
+class WatchedRun(NamedTuple):
+    """A whole run, and what was seen of it."""
+
+    system: SharedAutonomy
+    result: RunResult
+    summary: dict[str, Any]
+    watch: Watch
+
+
+def watched_run(
+    name: str,
+    kind: str | None,
+    seed: int,
+    *,
+    orientation: bool = True,
+    also: Callable[[SharedAutonomy, Context], None] = lambda system, root: None,
+) -> WatchedRun:
+    """One run of a scenario, watched; `also` is called after each step of the plant.
+
+    Without `orientation` its weight is zero, and no contact stops the robot.
+    """
     scenario = load_scenario(name)
     if kind is not None:
         scenario = with_items(scenario, kind)
@@ -134,9 +154,19 @@ def measure(name: str, kind: str | None, seed: int, orientation: bool = True) ->
         scenario.monitor.force_limit_n = math.inf
     system = build_shared_autonomy(scenario=scenario, canal=canal, seed=seed)
     watch = Watch(system)
+
+    def look(root: Context) -> None:
+        watch(root)
+        also(system, root)
+
     names = [item.name for item in scenario.items]
-    result = simulate(system, task=scenario.task, seed=seed, item_names=names, duration=900.0, watch=watch)
-    summary = summarize(result)
+    result = simulate(system, task=scenario.task, seed=seed, item_names=names, duration=900.0, watch=look)
+    return WatchedRun(system, result, summarize(result), watch)
+
+
+def measure(name: str, kind: str | None, seed: int, orientation: bool = True) -> dict[str, tuple[float, str]]:
+    """One run: metrics with their units."""
+    _, _, summary, watch = watched_run(name, kind, seed, orientation=orientation)
     factors, depth = np.array(watch.factors), np.array(watch.penetration)
     force = {pair: (value, "N") for pair, value in summary["max_contact_force_n"].items()}
     return {
