@@ -5,16 +5,41 @@ from __future__ import annotations
 import os
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Literal
 
 import numpy as np
 
 from canal.errors import InputError
-from canal.files import read_npz, write_and_rename, write_npz
+from canal.files import write_and_rename, write_npz
+from canal.reading import as_numbers, read_csv, read_npz
 
 SAMPLE_RATE_HZ = 20.0  # the paper records at 20 Hz; assumed where a file has no time stamps
 MIN_SAMPLES = 4
 CSV_HEADER = "t,x,y,z,qw,qx,qy,qz"
-LARGEST_COORDINATE_M = 100.0  # beyond this the file is in millimetres, or broken
+LARGEST_COORDINATE_M = 10.0  # from the robot's base; what an arm reaches is beyond this in centimetres or inches
+SMALLEST_STEP_S = 1e-5  # no tracker is faster than 100 kHz: what is closer in time is broken, or another unit
+SHORTEST_QUATERNION, LONGEST_QUATERNION = 0.5, 2.0  # rounding makes 0.999, a broken sample 0
+METRES = {"m": 1.0, "cm": 1e-2, "mm": 1e-3, "in": 0.0254}
+SECONDS = {"s": 1.0, "ms": 1e-3, "us": 1e-6, "ns": 1e-9}
+_WHAT = "a demonstration (.npz or .csv)"
+
+
+@dataclass(frozen=True)
+class RecordingFormat:
+    """How a recording holds its numbers, where it is not as ours.
+
+    Attributes:
+        units: of positions: m, cm, mm or in.
+        time_unit: of time stamps: s, ms, us or ns.
+        quaternion_order: wxyz, or xyzw as in ROS and scipy; a CSV names its columns instead.
+        drop_bad_samples: leave out samples that are not finite, without orientation or out of time, instead of
+            refusing the file.
+    """
+
+    units: Literal["m", "cm", "mm", "in"] = "m"
+    time_unit: Literal["s", "ms", "us", "ns"] = "s"
+    quaternion_order: Literal["wxyz", "xyzw"] = "wxyz"
+    drop_bad_samples: bool = False
 
 
 @dataclass(frozen=True, eq=False)
@@ -26,6 +51,8 @@ class Demonstration:
         orientation: unit quaternions q_BT, (w, x, y, z). Shape (N, 4). Normalised on construction.
         time: strictly increasing time stamps, [s]. Shape (N,). Built at 20 Hz when None is given.
         name: where it came from, for messages.
+        dropped: how many samples of the recording were left out as unusable.
+        lines: of its file, one a sample, for messages; None where it has none. Shape (N,).
 
     Raises:
         InputError: a shape, a length or a value cannot be used.
@@ -35,6 +62,8 @@ class Demonstration:
     orientation: np.ndarray
     time: np.ndarray = None  # type: ignore[assignment]
     name: str = "demonstration"
+    dropped: int = 0
+    lines: np.ndarray | None = None
 
     def __post_init__(self):
         position = _as_floats(self.position, "position", self.name)
@@ -56,25 +85,32 @@ class Demonstration:
             bad = np.flatnonzero(~np.isfinite(values).reshape(n, -1).all(axis=1))
             if bad.size:
                 raise InputError(
-                    f"{self.name}: {label} is not finite at {bad.size} of {n} samples, first at {bad[0]}; "
-                    "remove those samples"
+                    f"{self.name}: {label} is not finite at {bad.size} of {n} samples, first at {self._row(bad[0])}; "
+                    "remove those samples (learn --drop-bad-samples)"
                 )
         if np.abs(position).max() > LARGEST_COORDINATE_M:
+            far = int(np.argmax(np.abs(position).max(axis=1)))
             raise InputError(
-                f"{self.name}: position reaches {np.abs(position).max():.0f} m, more than "
-                f"{LARGEST_COORDINATE_M:.0f}; give it in metres"
+                f"{self.name}: position reaches {np.abs(position).max():.4g} m at {self._row(far)}, more than "
+                f"{LARGEST_COORDINATE_M:.0f}; give metres from the robot's base (learn --units cm, mm or in)"
             )
         steps = np.diff(time)
         if (steps <= 0).any():
             raise InputError(
-                f"{self.name}: time does not increase at sample {int(np.argmax(steps <= 0)) + 1}; sort the "
-                "samples, or leave time out for 20 Hz"
+                f"{self.name}: time does not increase at {self._row(int(np.argmax(steps <= 0)) + 1)}; sort the "
+                "samples, leave time out for 20 Hz, or drop them (learn --drop-bad-samples)"
+            )
+        if steps.min() < SMALLEST_STEP_S:
+            raise InputError(
+                f"{self.name}: time grows by {steps.min():.2g} s only at {self._row(int(np.argmin(steps)) + 1)} (at "
+                f"least {SMALLEST_STEP_S:g}); give seconds, or leave time out for 20 Hz"
             )
         norm = np.linalg.norm(orientation, axis=1)
-        if norm.min() < 0.5 or norm.max() > 2.0:
+        if norm.min() < SHORTEST_QUATERNION or norm.max() > LONGEST_QUATERNION:
             worst = int(np.argmax(np.abs(np.log(np.maximum(norm, 1e-300)))))
             raise InputError(
-                f"{self.name}: orientation {worst} has norm {norm[worst]:.3g}; quaternions must be unit, w, x, y, z"
+                f"{self.name}: the orientation at {self._row(worst)} has norm {norm[worst]:.3g}; quaternions must be "
+                "unit, w, x, y, z (learn --drop-bad-samples leaves such samples out)"
             )
         for label, values in (
             ("position", position),
@@ -83,6 +119,10 @@ class Demonstration:
         ):
             values.setflags(write=False)
             object.__setattr__(self, label, values)
+
+    def _row(self, sample: int) -> str:
+        """A sample as a person finds it."""
+        return f"sample {sample}" + ("" if self.lines is None else f" (line {self.lines[sample]})")
 
     def __len__(self) -> int:
         return len(self.position)
@@ -100,48 +140,58 @@ def _as_floats(values, label: str, name: str) -> np.ndarray:
         raise InputError(f"{name}: {label} is not an array of numbers") from None
 
 
-def load_demonstration(path: str | os.PathLike) -> Demonstration:
+def load_demonstration(path: str | os.PathLike, recorded: RecordingFormat = RecordingFormat()) -> Demonstration:
     """Read a demonstration from `.npz` (`position`, `orientation`, optionally `time`) or `.csv`.
 
-    A CSV has the header `t,x,y,z,qw,qx,qy,qz`. Nothing is ever unpickled.
+    A CSV has the header `t,x,y,z,qw,qx,qy,qz`, in any order. Nothing is ever unpickled.
+
+    Args:
+        path: the file.
+        recorded: units and order in which it holds its numbers, and what to do with samples that cannot be used.
 
     Raises:
         InputError: the file is missing, or is not such a file; the message says what to mend.
     """
     path = Path(path)
-    if not path.exists():
-        raise InputError(f"{path}: no such file; give a demonstration as .npz or .csv")
-    if path.is_dir():
-        raise InputError(f"{path}: is a folder; give a demonstration as .npz or .csv")
-    if path.stat().st_size == 0:
-        raise InputError(f"{path}: the file is empty; record the demonstration again")
-    return _load_csv(path) if path.suffix.lower() == ".csv" else _load_npz(path)
+    name = path.name
+    if path.suffix.lower() == ".csv":
+        table, lines = read_csv(path, _WHAT, CSV_HEADER.split(","))
+        arrays = {"time": table[:, 0], "position": table[:, 1:4], "orientation": table[:, 4:]}
+    else:
+        arrays, lines = read_npz(path, _WHAT, ("position", "orientation", "time")), None
+        for key in ("position", "orientation"):
+            if key not in arrays:
+                found = ", ".join(sorted(arrays)) or "neither"
+                raise InputError(f"{path}: has no array '{key}' (found: {found}); it needs position and orientation")
+        arrays = {key: as_numbers(array, f"{path}: {key}") for key, array in arrays.items()}
+        if recorded.quaternion_order == "xyzw" and arrays["orientation"].ndim == 2:
+            arrays["orientation"] = np.roll(arrays["orientation"], 1, axis=1)
+    position, orientation, time = arrays["position"], arrays["orientation"], arrays.get("time")
+    position = position * METRES[recorded.units]
+    if time is not None and time.size and recorded.time_unit != "s":
+        time = (time - time.flat[0]) * SECONDS[recorded.time_unit]
+    dropped, timed = 0, time
+    if recorded.drop_bad_samples:
+        position, orientation, timed, dropped = _without_bad_samples(position, orientation, time)
+        lines = None
+    return Demonstration(position, orientation, timed, name, dropped, lines)  # type: ignore[arg-type]
 
 
-def _load_npz(path: Path) -> Demonstration:
-    arrays = read_npz(path, "a demonstration")
-    for key in ("position", "orientation"):
-        if key not in arrays:
-            found = ", ".join(sorted(arrays)) or "nothing"
-            raise InputError(f"{path}: has no array '{key}' (found: {found}); it needs position and orientation")
-    return Demonstration(arrays["position"], arrays["orientation"], arrays.get("time"), path.name)  # type: ignore[arg-type]
-
-
-def _load_csv(path: Path) -> Demonstration:
-    try:
-        lines = path.read_text(encoding="utf-8-sig").splitlines()
-    except UnicodeDecodeError:
-        raise InputError(f"{path}: is not text; a CSV starts with the header {CSV_HEADER}") from None
-    if not lines or lines[0].replace(" ", "").lower() != CSV_HEADER:
-        raise InputError(f"{path}: the first line must be {CSV_HEADER}")
-    rows = [line for line in lines[1:] if line.strip()]
-    try:
-        table = np.array([[float(cell) for cell in row.split(",")] for row in rows])
-    except ValueError:
-        raise InputError(f"{path}: a row is not 8 numbers; the columns are {CSV_HEADER}") from None
-    if table.ndim != 2 or table.shape[1] != 8:
-        raise InputError(f"{path}: found {len(rows)} rows of {table.shape[1:]} columns; they must be {CSV_HEADER}")
-    return Demonstration(table[:, 1:4], table[:, 4:8], table[:, 0], name=path.name)
+def _without_bad_samples(
+    position: np.ndarray, orientation: np.ndarray, time: np.ndarray | None
+) -> tuple[np.ndarray, np.ndarray, np.ndarray | None, int]:
+    """The samples that can be used, timed, and how many were dropped; arrays of odd shapes are left to be refused."""
+    n = len(position) if position.ndim == 2 else 0
+    clock = np.arange(n) / SAMPLE_RATE_HZ if time is None else time
+    if orientation.shape != (n, 4) or clock.shape != (n,):
+        return position, orientation, time, 0
+    norm = np.linalg.norm(orientation, axis=1)
+    good = np.isfinite(position).all(axis=1) & np.isfinite(norm) & np.isfinite(clock)
+    good &= (norm > SHORTEST_QUATERNION) & (norm < LONGEST_QUATERNION)
+    good &= (np.abs(position) <= LARGEST_COORDINATE_M).all(axis=1)
+    before = np.concatenate([[-np.inf], np.maximum.accumulate(np.where(good, clock, -np.inf))[:-1]])
+    good &= clock > before + SMALLEST_STEP_S
+    return position[good], orientation[good], clock[good], int(n - good.sum())
 
 
 def save_demonstration(path: str | os.PathLike, demonstration: Demonstration) -> None:

@@ -1,39 +1,15 @@
-"""Files of ours: `.npz` archives read without unpickling, and outputs that appear whole or not at all."""
+"""Files that we write: whole, or not at all."""
 
 from __future__ import annotations
 
 import os
 import tempfile
-import zipfile
 from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
 
 from canal.errors import InputError
-
-
-def read_npz(path: Path, what: str) -> dict[str, np.ndarray]:
-    """All arrays of an `.npz`, never unpickling.
-
-    Args:
-        path: the file.
-        what: what it should be, for the message.
-
-    Raises:
-        InputError: it cannot be read as such.
-    """
-    try:
-        with np.load(path, allow_pickle=False) as archive:
-            if not isinstance(archive, np.lib.npyio.NpzFile):
-                raise InputError(f"{path}: holds one bare array; {what} is an .npz")
-            return {key: archive[key] for key in archive.files}
-    except InputError:
-        raise
-    except FileNotFoundError:
-        raise InputError(f"{path}: no such file; give {what} as .npz") from None
-    except (OSError, ValueError, EOFError, zipfile.BadZipFile, KeyError):
-        raise InputError(f"{path}: cannot be read as .npz without pickles; {what} is an .npz of plain arrays") from None
 
 
 def write_npz(path: str | os.PathLike, **arrays: np.ndarray) -> None:

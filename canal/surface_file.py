@@ -1,16 +1,17 @@
-"""Canal files: one `.npz`, bit for bit."""
+"""Canal files: one `.npz`, bit for bit, checked as geometry when it is read."""
 
 from __future__ import annotations
 
 import os
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from canal.errors import InputError
-from canal.files import read_npz, write_npz
+from canal.files import write_npz
+from canal.reading import as_numbers, read_npz
 from canal.refinement import SupportPlane
+from canal.trimming import continuous_signs
 
 if TYPE_CHECKING:
     from canal.surface import CanalSurface
@@ -29,6 +30,13 @@ SHAPES = {  # of the arrays every file has; N disks, n demonstrations
     "demonstrations": ("n", "N", 3),
     "demonstration_orientations": ("n", "N", 4),
 }
+OPTIONAL_SHAPES = {"ellipses": ("N", 3), "x_global": (3,), "support_planes": ("k", 4)}
+TOLERANCE = 1e-4  # of unit length and right angles: files of single floats have 1e-7
+FURTHEST_M = 100.0  # no arm's canal is so long, or so far from its base
+SHORTEST_M = 1e-4  # below this all disks are in one place
+HEAVIEST = 1e6  # an orientation weight beyond this leaves the position nothing: w_p is 100
+_UNIT = ("tangents", "normals", "x_axes", "y_axes", "orientations", "demonstration_orientations")
+_AGAIN = "make the file again with learn -o"
 
 
 def save_canal(canal: CanalSurface, path: str | os.PathLike) -> None:
@@ -50,31 +58,77 @@ def read_canal_fields(path: str | os.PathLike) -> dict:
     Raises:
         InputError: it is not a canal file, with what is missing or wrong.
     """
-    arrays = read_npz(Path(path), "a canal")
+    scalars = ("moving_time_s", "format_version")
+    arrays = read_npz(path, "a canal (.npz)", (*SHAPES, *OPTIONAL_SHAPES, *scalars, "warnings"))
     missing = [key for key in (*SHAPES, "moving_time_s") if key not in arrays]
     if missing:
         raise InputError(f"{path}: is no canal file, it lacks {', '.join(missing)}; make one with learn -o")
-    version = int(arrays.get("format_version", FORMAT_VERSION))
+    warnings = arrays.pop("warnings", np.empty(0, dtype=np.str_))
+    numbers = {key: as_numbers(array, f"{path}: {key}") for key, array in arrays.items()}
+    for key in scalars:
+        if key in numbers and (numbers[key].shape != () or not numbers[key] > 0 or np.isinf(numbers[key])):
+            raise InputError(f"{path}: {key} must be one positive number; {_AGAIN}")
+    version = float(numbers.pop("format_version", np.array(FORMAT_VERSION)))
     if version > FORMAT_VERSION:
-        raise InputError(f"{path}: format {version}, this program reads up to {FORMAT_VERSION}; update it")
-    sizes = {"N": len(np.atleast_1d(arrays["directrix"])), "n": len(np.atleast_1d(arrays["demonstrations"]))}
-    if sizes["N"] < 3 or sizes["N"] % 2 == 0:
-        raise InputError(f"{path}: {sizes['N']} disks; a canal has an odd number of at least 3")
-    shapes: dict[str, tuple] = {**SHAPES, "moving_time_s": ()}
-    shapes |= {key: shape for key, shape in (("ellipses", ("N", 3)), ("x_global", (3,))) if key in arrays}
-    for key, shape in shapes.items():
-        wanted = tuple(sizes[side] if isinstance(side, str) else side for side in shape)
-        if arrays[key].shape != wanted or not np.issubdtype(arrays[key].dtype, np.number):
-            raise InputError(f"{path}: {key} has shape {arrays[key].shape}; it must be {wanted}, numbers")
-        if not np.isfinite(arrays[key]).all():
-            raise InputError(f"{path}: {key} is not finite; make the file again with learn -o")
-    if arrays["moving_time_s"] <= 0 or (arrays["radii"] < 0).any():
-        raise InputError(f"{path}: moving_time_s and radii must be positive; make the file again with learn -o")
-    planes = arrays.get("support_planes", np.empty((0, 4)))
-    return {key: arrays[key] for key in SHAPES} | {
-        "moving_time_s": float(arrays["moving_time_s"]),
-        "ellipses": arrays.get("ellipses"),
-        "support_planes": tuple(SupportPlane((a, b, c), d) for a, b, c, d in planes.tolist()),
-        "x_global": arrays.get("x_global"),
-        "warnings": tuple(str(line) for line in arrays.get("warnings", ())),
+        raise InputError(f"{path}: format {version:g}, this program reads up to {FORMAT_VERSION}; update it")
+    _check_shapes(path, numbers)
+    _check_geometry(path, numbers)
+    for key in ("orientations", "demonstration_orientations"):  # q and -q are one rotation, but not half-way between
+        rows = numbers[key].reshape(-1, *numbers[key].shape[-2:])
+        numbers[key] = np.stack([continuous_signs(row) for row in rows]).reshape(numbers[key].shape)
+    planes = numbers.get("support_planes", np.empty((0, 4))).tolist()
+    return {key: numbers[key] for key in SHAPES} | {
+        "moving_time_s": float(numbers["moving_time_s"]),
+        "ellipses": numbers.get("ellipses"),
+        "support_planes": tuple(SupportPlane((a, b, c), d) for a, b, c, d in planes),
+        "x_global": numbers.get("x_global"),
+        "warnings": tuple(str(line) for line in np.atleast_1d(warnings)),
     }
+
+
+def _check_shapes(path, numbers: dict[str, np.ndarray]) -> None:
+    sizes = {"N": numbers["directrix"].shape[:1], "n": numbers["demonstrations"].shape[:1]}
+    sizes["k"] = numbers.get("support_planes", np.empty((0, 4))).shape[:1]
+    if sizes["N"] and (sizes["N"][0] < 3 or sizes["N"][0] % 2 == 0):
+        raise InputError(f"{path}: {sizes['N'][0]} disks; a canal has an odd number of at least 3")
+    if sizes["n"] == (0,):
+        raise InputError(f"{path}: demonstrations has none in it; {_AGAIN}")
+    for key, shape in (SHAPES | OPTIONAL_SHAPES).items():
+        if key not in numbers:
+            continue
+        wanted = tuple((sizes[side] or (side,))[0] if isinstance(side, str) else side for side in shape)
+        if numbers[key].shape != wanted:
+            raise InputError(f"{path}: {key} has shape {numbers[key].shape}; it must be {wanted}")
+        if not np.isfinite(numbers[key]).all():
+            raise InputError(f"{path}: {key} is not finite; {_AGAIN}")
+
+
+def _check_geometry(path, numbers: dict[str, np.ndarray]) -> None:
+    """Unit vectors unit, frames orthogonal, lengths, spreads and weights no less than 0, all within a room."""
+    for key in _UNIT:
+        off = np.abs(np.linalg.norm(numbers[key], axis=-1) - 1.0)
+        if off.max() > TOLERANCE:
+            s = int(np.argmax(off.reshape(-1, off.shape[-1]).max(axis=0)))
+            raise InputError(f"{path}: {key} is not of unit length at disk {s}; {_AGAIN}")
+    for a, b in (("x_axes", "y_axes"), ("normals", "x_axes"), ("normals", "y_axes")):
+        cosine = np.abs(np.sum(numbers[a] * numbers[b], axis=1))
+        if cosine.max() > TOLERANCE:
+            raise InputError(f"{path}: {a} and {b} are not at right angles at disk {int(np.argmax(cosine))}; {_AGAIN}")
+    bounds = {"radii": FURTHEST_M, "orientation_sd": 2.0, "orientation_weights": HEAVIEST}
+    for key, most in bounds.items():
+        bad = (numbers[key] < 0) | (numbers[key] > most)
+        if bad.any():
+            s = int(np.argmax(bad))
+            raise InputError(
+                f"{path}: {key} is {numbers[key][s]:g} at disk {s}; it must lie in [0, {most:g}]; {_AGAIN}"
+            )
+    for key in ("directrix", "demonstrations"):
+        if np.abs(numbers[key]).max() > FURTHEST_M:
+            raise InputError(f"{path}: {key} reaches {np.abs(numbers[key]).max():.4g} m; give metres; {_AGAIN}")
+    length = float(np.sum(np.linalg.norm(np.diff(numbers["directrix"], axis=0), axis=1)))
+    if length < SHORTEST_M:
+        raise InputError(f"{path}: directrix is {1e3 * length:.2g} mm long; {_AGAIN}")
+    if "ellipses" in numbers and (numbers["ellipses"][:, :2] < 0).any():
+        raise InputError(f"{path}: ellipses has semi-axes below 0; {_AGAIN}")
+    if "x_global" in numbers and np.linalg.norm(numbers["x_global"]) < TOLERANCE:
+        raise InputError(f"{path}: x_global is zero; give a direction")

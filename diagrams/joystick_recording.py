@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import csv
-import zipfile
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -11,9 +9,11 @@ import numpy as np
 
 from canal.errors import InputError
 from canal.joystick import JOYSTICK_SIZE
+from canal.reading import as_numbers, read_csv, read_npz
 
 CSV_HEADER = ("t", "k_x", "k_y", "gripper", "reverse", "start", "stop")
-"""First line of a CSV file."""
+"""First line of a CSV file, in any order."""
+_WHAT = "a recorded joystick (.npz or .csv)"
 
 
 @dataclass(frozen=True)
@@ -71,40 +71,16 @@ def load_recording(path: str | Path) -> JoystickRecording:
         InputError: the file is missing or cannot be used; says why.
     """
     path = Path(path)
-    if not path.is_file():
-        raise InputError(f"{path}: there is no such file; give a recorded joystick (.npz or .csv)")
-    time, joystick = _read_npz(path) if path.suffix == ".npz" else _read_csv(path)
+    if path.suffix.lower() == ".csv":
+        table, _ = read_csv(path, _WHAT, CSV_HEADER)
+        time, joystick = table[:, 0], table[:, 1:]
+    else:
+        arrays = read_npz(path, _WHAT, ("time", "stick", "buttons"))
+        missing = [key for key in ("time", "stick", "buttons") if key not in arrays]
+        if missing:
+            raise InputError(f"{path}: has no {', '.join(missing)}; give a log as --log writes it, or {_WHAT}")
+        time, stick, buttons = (as_numbers(arrays[key], f"{path}: {key}") for key in ("time", "stick", "buttons"))
+        if stick.shape != (time.size, 2) or buttons.shape != (time.size, JOYSTICK_SIZE - 2):
+            raise InputError(f"{path}: stick {stick.shape} and buttons {buttons.shape}; give (T, 2) and (T, 4)")
+        joystick = np.hstack([stick, buttons])
     return JoystickRecording(time, joystick, name=str(path))
-
-
-def _read_npz(path: Path) -> tuple[np.ndarray, np.ndarray]:
-    try:
-        with np.load(path, allow_pickle=False) as file:
-            missing = [key for key in ("time", "stick", "buttons") if key not in file]
-            if missing:
-                raise InputError(f"{path}: no {', '.join(missing)} in it; give time, stick and buttons")
-            time, stick, buttons = (np.asarray(file[key], dtype=float) for key in ("time", "stick", "buttons"))
-    except InputError:
-        raise
-    except (ValueError, TypeError, OSError, EOFError, zipfile.BadZipFile) as error:
-        raise InputError(f"{path}: not an .npz file of numbers; give one as --log writes it") from error
-    if stick.shape != (len(np.atleast_1d(time)), 2) or buttons.shape != (len(stick), JOYSTICK_SIZE - 2):
-        raise InputError(f"{path}: stick {stick.shape} and buttons {buttons.shape}; give (T, 2) and (T, 4)")
-    return time, np.hstack([stick, buttons])
-
-
-def _read_csv(path: Path) -> tuple[np.ndarray, np.ndarray]:
-    try:
-        with path.open(newline="", encoding="utf-8") as file:
-            rows = [[cell.strip() for cell in row] for row in csv.reader(file) if row]
-    except (UnicodeDecodeError, csv.Error) as error:
-        raise InputError(f"{path}: not a CSV file; give one, or an .npz") from error
-    if not rows or tuple(rows[0]) != CSV_HEADER:
-        raise InputError(f"{path}: the first line is not {','.join(CSV_HEADER)}; put it there")
-    try:
-        values = np.array([[float(cell) for cell in row] for row in rows[1:]])
-    except ValueError as error:
-        raise InputError(f"{path}: a cell is not a number, or a row is shorter than the header: mend it") from error
-    if values.ndim != 2 or values.shape[1] != len(CSV_HEADER):
-        raise InputError(f"{path}: {len(rows) - 1} rows, not all of {len(CSV_HEADER)} numbers; give at least one row")
-    return values[:, 0], values[:, 1:]
