@@ -9,11 +9,16 @@ from scipy.ndimage import gaussian_filter1d
 
 from canal.demonstration import SAMPLE_RATE_HZ, Demonstration
 from canal.errors import InputError
+from canal.moving_time import moving_time
 
 SMOOTHING_SAMPLES = 4.0  # [samples at 20 Hz] σ of the smoothing in time
 ROTATION_LENGTH_M = 0.07  # [m / rad] λ: how much motion a turn on the spot is
 SPEED_SHARE = 0.25  # v₀ = 0.25 Σv²/Σv: half of the weight is lost at a quarter of the usual speed
 LARGEST_JUMP_M, LARGEST_JUMP = 0.15, 30.0  # [m], [usual steps]; recordings have steps of up to 6 usual ones
+SLOWEST_M_S = (
+    0.002  # [m/s] on the mean while it moves; hands move at 20 to 500 mm/s, a thousandth of it if time is in ms
+)
+LONGEST_GAP = 10.0  # [usual steps in time] half a second at 20 Hz; a longer one is a pause that was not written
 SMALLEST_MOTION_M = 0.005  # [m] a tremor reaches 5 mm; what moves less has no direction
 
 
@@ -24,7 +29,7 @@ class Motion:
     Attributes:
         position: [m]. Shape (M, 3).
         orientation: unit quaternions, sign-continuous. Shape (M, 4).
-        moving_time: time spent moving, Σ w dt, [s].
+        moving_time: time spent moving, pauses left out, [s]; see `canal.moving_time`.
         length: ℓ of the whole, [m], turns included.
         name: of the demonstration.
     """
@@ -57,19 +62,25 @@ def trim(demonstration: Demonstration, n_points: int) -> Motion:
             f"{1e3 * SMALLEST_MOTION_M:.0f} mm); record it again"
         )
     _refuse_jumps(demonstration)
-    dt = demonstration.duration / (n - 1)
-    clock = np.linspace(demonstration.time[0], demonstration.time[-1], n)
+    recorded = _without_gaps(demonstration)
+    dt = recorded[-1] / (n - 1)
+    clock = np.linspace(0.0, recorded[-1], n)
     # A fast recording is smoothed as long as a slow one; a short one never over more than its own features.
     sigma = min(max(SMOOTHING_SAMPLES, SMOOTHING_SAMPLES / (SAMPLE_RATE_HZ * dt)), n / 50.0)
-    position = _smooth(_at(clock, demonstration.time, demonstration.position), sigma)
-    turned = _smooth(_at(clock, demonstration.time, continuous_signs(demonstration.orientation)), sigma)
+    position = _at(clock, recorded, demonstration.position)
+    turned = _at(clock, recorded, continuous_signs(demonstration.orientation))
+    moving = moving_time(np.hstack([position, 2.0 * ROTATION_LENGTH_M * turned]), dt)
+    position, turned = _smooth(position, sigma), _smooth(turned, sigma)
     orientation = continuous_signs(turned / np.linalg.norm(turned, axis=1, keepdims=True))
-    moved = np.linalg.norm(np.diff(position, axis=0), axis=1)
-    half_chord = 0.5 * np.linalg.norm(np.diff(orientation, axis=0), axis=1)
-    step = np.hypot(moved, ROTATION_LENGTH_M * 4.0 * np.arcsin(np.minimum(half_chord, 1.0)))
-    usual = SPEED_SHARE * np.sum(step**2) / np.sum(step)
-    weight = (step / usual) ** 2 / (1.0 + (step / usual) ** 2)
-    length = np.concatenate([[0.0], np.cumsum(step * weight)])
+    step = _steps(position, orientation)
+    usual = np.sum(step**2) / np.sum(step)
+    if usual < SLOWEST_M_S * dt:
+        raise InputError(
+            f"{demonstration.name}: moves at {1e3 * usual / dt:.2g} mm/s, {demonstration.duration:.0f} s in all (at "
+            f"least {1e3 * SLOWEST_M_S:.0f} mm/s); give time in seconds (learn --time-unit ms, us or ns)"
+        )
+    ratio = (step / (SPEED_SHARE * usual)) ** 2
+    length = np.concatenate([[0.0], np.cumsum(step * ratio / (1.0 + ratio))])
     # The least slope keeps ℓ invertible where nothing moves at all.
     length += np.arange(n) * (1e-9 * length[-1] / n)
     at = np.interp(np.linspace(0.0, length[-1], n_points), length, np.arange(n, dtype=float))
@@ -77,10 +88,33 @@ def trim(demonstration: Demonstration, n_points: int) -> Motion:
     return Motion(
         position=_at(at, np.arange(n, dtype=float), position),
         orientation=turned / np.linalg.norm(turned, axis=1, keepdims=True),
-        moving_time=float(np.sum(weight) * dt),
+        moving_time=moving,
         length=float(length[-1]),
         name=demonstration.name,
     )
+
+
+def _steps(position: np.ndarray, orientation: np.ndarray) -> np.ndarray:
+    """How far each sample is from the one before, turns included, [m]. Shape (N-1,)."""
+    moved = np.linalg.norm(np.diff(position, axis=0), axis=1)
+    half_chord = 0.5 * np.linalg.norm(np.diff(orientation, axis=0), axis=1)
+    return np.hypot(moved, ROTATION_LENGTH_M * 4.0 * np.arcsin(np.minimum(half_chord, 1.0)))
+
+
+def _without_gaps(demonstration: Demonstration) -> np.ndarray:
+    """Times of the samples from 0 on, with gaps no longer than what happened in them takes, [s]. Shape (N,).
+
+    A recorder that writes nothing in a pause leaves a gap. Spread over it, even times would be too far apart for the
+    motion. A step counts at most `LONGEST_GAP` usual ones, or what its way takes at the usual speed if that is more.
+    """
+    dt = np.diff(demonstration.time)
+    longest = LONGEST_GAP * np.median(dt)
+    if dt.max() > longest:
+        step = _steps(demonstration.position, continuous_signs(demonstration.orientation))
+        even = dt <= longest
+        speed = np.sum(step[even] ** 2) / max(np.sum(step[even] * dt[even]), 1e-12)
+        dt = np.minimum(dt, np.maximum(longest, step / max(speed, 1e-12)))
+    return np.concatenate([[0.0], np.cumsum(dt)])
 
 
 def _refuse_jumps(demonstration: Demonstration) -> None:
