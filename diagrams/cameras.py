@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import shutil
 import subprocess
+import tempfile
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import BinaryIO
 
 import numpy as np
 from PIL import Image
@@ -27,6 +29,7 @@ from pydrake.systems.framework import Context, DiagramBuilder, LeafSystem
 from pydrake.systems.sensors import CameraInfo, ImageRgba8U, RgbdSensor
 
 from canal.errors import InputError
+from canal.files import write_and_rename
 from diagrams.lio_station import LioStation
 
 RENDERER = "vtk"
@@ -58,6 +61,20 @@ X_GRIPPER_CAMERA = RigidTransform(
     [-0.075, 0.0, 0.085],
 )
 """On link `lio_gripper`: above the fingers, looking down on them by 17°; z forward, y down in the picture."""
+
+
+def film_kind(path: Path) -> str:
+    """`.gif`, or `.mp4` where ffmpeg is installed: what a file for a film is.
+
+    Raises:
+        InputError: another ending, or mp4 without ffmpeg.
+    """
+    kind = path.suffix.lower()
+    if kind not in (".gif", ".mp4"):
+        raise InputError(f"{path}: is neither .gif nor .mp4; give one of these endings")
+    if kind == ".mp4" and shutil.which("ffmpeg") is None:
+        raise InputError(f"{path}: needs ffmpeg, which is not installed; install it or give a .gif")
+    return kind
 
 
 def look_at(eye: Sequence[float], target: Sequence[float]) -> RigidTransform:
@@ -124,11 +141,7 @@ class VideoRecorder(LeafSystem):
             InputError: another ending, or mp4 without ffmpeg.
         """
         super().__init__()
-        if path.suffix not in (".gif", ".mp4"):
-            raise InputError(f"video {path.name!r} is neither .gif nor .mp4; give one of these endings")
-        if path.suffix == ".mp4" and shutil.which("ffmpeg") is None:
-            raise InputError(f"video {path.name!r} needs ffmpeg, which is not installed; install it or give a .gif")
-        self._path = path
+        self._path, self._kind = path, film_kind(path)
         self._frames: list[Image.Image] = []
         self._room = self.DeclareAbstractInputPort("room_image", Value(ImageRgba8U()))
         self._gripper = self.DeclareAbstractInputPort("gripper_image", Value(ImageRgba8U()))
@@ -142,22 +155,34 @@ class VideoRecorder(LeafSystem):
         picture[margin - 2 : margin + h + 2, -margin - w - 2 : -margin + 2] = 255
         picture[margin : margin + h, -margin - w : -margin] = inset
         frame = Image.fromarray(picture)
-        self._frames.append(frame.quantize(COLORS, dither=Image.Dither.NONE) if self._path.suffix == ".gif" else frame)
+        self._frames.append(frame.quantize(COLORS, dither=Image.Dither.NONE) if self._kind == ".gif" else frame)
 
     def save(self) -> None:
-        """Write the file, whole or not at all."""
+        """Write the file, whole or not at all; none where no picture was taken.
+
+        Raises:
+            InputError: it cannot be written, or ffmpeg fails.
+        """
         if not self._frames:
             return
-        written = self._path.with_name(f".{self._path.stem}.part.{'gif' if self._path.suffix == '.gif' else 'png'}")
+        if self._kind == ".gif":
+            write_and_rename(self._path, lambda stream: self._write(stream, "GIF"))
+            return
+        with tempfile.TemporaryDirectory() as folder:
+            pictures, film = Path(folder) / "frames.png", Path(folder) / "film.mp4"
+            with pictures.open("wb") as stream:
+                self._write(stream, "PNG")
+            command = ["ffmpeg", "-y", "-loglevel", "error", "-i", str(pictures), "-pix_fmt", "yuv420p", str(film)]
+            done = subprocess.run(command, stdin=subprocess.DEVNULL, stderr=subprocess.PIPE, check=False)
+            if done.returncode or not film.is_file():
+                words = done.stderr.decode(errors="replace").strip() or f"status {done.returncode}"
+                raise InputError(f"{self._path}: ffmpeg failed ({words}); give a .gif")
+            with film.open("rb") as made:
+                write_and_rename(self._path, lambda stream: shutil.copyfileobj(made, stream))
+
+    def _write(self, stream: BinaryIO, form: str) -> None:
         first, *rest = self._frames
-        first.save(written, save_all=True, append_images=rest, duration=round(1000 / FRAME_RATE), loop=0)
-        if self._path.suffix == ".mp4":
-            movie = written.with_suffix(".mp4")
-            command = ["ffmpeg", "-y", "-loglevel", "error", "-i", str(written), "-pix_fmt", "yuv420p", str(movie)]
-            subprocess.run(command, check=True)
-            written.unlink()
-            written = movie
-        written.replace(self._path)
+        first.save(stream, form, save_all=True, append_images=rest, duration=round(1000 / FRAME_RATE), loop=0)
 
     @staticmethod
     def AddToBuilder(*, builder: DiagramBuilder, station: LioStation, path: Path) -> VideoRecorder:

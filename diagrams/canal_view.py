@@ -115,7 +115,12 @@ class CanalView(LeafSystem):
         builder.Connect(navigation_state, view.GetInputPort("navigation_state"))
         if X_BT is not None:
             TrailView.AddToBuilder(
-                builder=builder, meshcat=meshcat, X_BT=X_BT, navigation_state=navigation_state, X_WB=X_WB
+                builder=builder,
+                meshcat=meshcat,
+                X_BT=X_BT,
+                navigation_state=navigation_state,
+                X_WB=X_WB,
+                name=f"{name}_trail",
             )
         return view
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import html
 from pathlib import Path
 
 from pydrake.geometry import Meshcat
@@ -34,5 +35,6 @@ class Recording:
         """
         self._meshcat.StopRecording()
         self._meshcat.PublishRecording()
-        html = self._meshcat.StaticHtml().replace(PAGE_TITLE, f"<title>{self._title}</title>", 1)
-        write_and_rename(Path(path), lambda stream: stream.write(html.encode()))
+        title = f"<title>{html.escape(self._title)}</title>"
+        page = self._meshcat.StaticHtml().replace(PAGE_TITLE, title, 1)
+        write_and_rename(Path(path), lambda stream: stream.write(page.encode()))

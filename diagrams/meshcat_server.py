@@ -2,12 +2,18 @@
 
 from __future__ import annotations
 
+import contextlib
+import functools
+import logging
 import os
+import secrets
+import socket
 import sys
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from typing import NoReturn
 
 import numpy as np
+from pydrake.common import use_native_cpp_logging
 from pydrake.geometry import Meshcat, MeshcatParams
 from pydrake.math import RigidTransform
 
@@ -22,6 +28,9 @@ FIELD_OF_VIEW = 40.0
 
 LOWEST_PORT, HIGHEST_PORT = 1024, 65535
 """Ports that a program without privileges may take."""
+
+DEAF_MS = 10_000
+"""[ms] A client that reads nothing for so long is cut off: what it does not take waits in memory, 1 MB a second."""
 
 LAMP = "/Lights/SpotLight/<object>"
 LOOK: tuple[tuple[str, str, bool | float | list[float]], ...] = (
@@ -59,6 +68,7 @@ def start_meshcat(
     X_WB: RigidTransform | None = None,
     camera: Sequence[float] = CAMERA,
     target: Sequence[float] = TARGET,
+    hidden: bool = False,
 ) -> Meshcat:
     """Serve a Meshcat page on localhost, for browsers on this machine.
 
@@ -67,6 +77,8 @@ def start_meshcat(
         X_WB: where the robot's base stands; None: at the world's origin.
         camera: where the eye stands, in B [m]. Shape (3,).
         target: what it looks at, in B [m]. Shape (3,).
+        hidden: for a recording: at an address that nobody knows, since a single malformed message from any client ends
+            a Meshcat with all that it has recorded.
 
     Returns:
         The Meshcat; `web_url()` is its address. Only the thread that made it may call it.
@@ -78,10 +90,11 @@ def start_meshcat(
         raise InputError(
             f"port {port} is outside {LOWEST_PORT}..{HIGHEST_PORT}: give one inside, or 0 for any free one"
         )
+    _log_without_python()
     params = MeshcatParams(
-        # Drake's default listens on every interface, and whoever reaches the page moves the robot.
-        host="localhost",
-        port=port,
+        # Drake's default listens on every interface.
+        host=_secret_host() if hidden else "localhost",
+        port=0 if hidden else port,
         initial_properties=[
             MeshcatParams.PropertyTuple(path=path, property=name, value=value) for path, name, value in LOOK
         ],
@@ -94,12 +107,54 @@ def start_meshcat(
         which = "every port in 7000..7999 on localhost is" if port is None else f"port {port} on localhost is"
         remedy = "give a free one with --port, or end the program that listens there"
         raise InputError(f"{which} taken: {remedy}") from error
+    _cut_off_deaf_clients(meshcat.port())
     meshcat.SetCamera(Meshcat.PerspectiveCamera(fov=FIELD_OF_VIEW, aspect=1.6))
     X_WB = RigidTransform() if X_WB is None else X_WB
     meshcat.SetCameraPose(
         X_WB.multiply(np.asarray(camera, dtype=float)), X_WB.multiply(np.asarray(target, dtype=float))
     )
     return meshcat
+
+
+@functools.cache
+def _log_without_python() -> None:
+    """Let Drake write its log itself, errors only.
+
+    Its default hands each line to Python. Meshcat's thread then waits for the interpreter's lock, which the main thread
+    holds while it waits for Meshcat: for good, after a few messages from a client that Meshcat complains about.
+    """
+    logging.getLogger("drake").setLevel(logging.ERROR)  # who sends what Meshcat does not know fills no terminal
+    with contextlib.suppress(RuntimeError):  # somebody has set up Drake's log otherwise
+        use_native_cpp_logging()
+
+
+def _secret_host() -> str:
+    """One of the 16 million addresses of this machine that Linux has and nobody outside it reaches."""
+    host = ".".join(str(n) for n in (127, *(1 + secrets.randbelow(254) for _ in range(3))))
+    with socket.socket() as probe:
+        try:
+            probe.bind((host, 0))
+        except OSError:  # other systems have 127.0.0.1 alone
+            return "localhost"
+    return host
+
+
+def _cut_off_deaf_clients(port: int) -> None:
+    """Have the kernel end each connection to `port` whose client does not read; Meshcat keeps all it cannot send."""
+    if not hasattr(socket, "TCP_USER_TIMEOUT"):
+        return
+    for listener in _listeners(port):
+        # Connections inherit it from the socket that they come in by.
+        listener.setsockopt(socket.IPPROTO_TCP, socket.TCP_USER_TIMEOUT, DEAF_MS)
+
+
+def _listeners(port: int) -> Iterator[socket.socket]:
+    """This process's sockets that listen at a port."""
+    with contextlib.suppress(OSError):  # no /proc
+        for name in os.listdir("/proc/self/fd"):
+            with contextlib.suppress(OSError), socket.socket(fileno=os.dup(int(name))) as found:
+                if found.getsockopt(socket.SOL_SOCKET, socket.SO_ACCEPTCONN) and found.getsockname()[1] == port:
+                    yield found
 
 
 def leave(status: int, meshcat: Meshcat | None = None) -> NoReturn:

@@ -59,7 +59,7 @@ def build_shared_autonomy(
     operator: Literal["simulated", "person"] | JoystickRecording = "simulated",
     seed: int = 0,
     meshcat: Meshcat | None = None,
-    recording: bool = False,
+    recording: Meshcat | None = None,
     video: Path | None = None,
 ) -> SharedAutonomy:
     """Wire a scenario and a canal into a diagram.
@@ -72,10 +72,11 @@ def build_shared_autonomy(
     Args:
         scenario: task, things, options.
         canal: to travel, in the robot's base frame.
-        operator: who holds the joystick until a person in the Meshcat page touches it.
+        operator: who holds the joystick; only `person` takes commands from the Meshcat page, which any program on this
+            machine can reach.
         seed: of where the things lie and of the simulated operator's errors.
         meshcat: where to show it; None for no pictures.
-        recording: whether Meshcat's animation is being recorded.
+        recording: a Meshcat of its own that records it; None for no recording.
         video: film the room and the gripper's view for this file; saved by `SharedAutonomy.video`.
 
     Raises:
@@ -111,7 +112,9 @@ def build_shared_autonomy(
         holds.append(hold)
         measured[name] = hold.get_output_port()
 
-    person = None if meshcat is None else MeshcatJoystick.AddToBuilder(builder=builder, meshcat=meshcat)
+    person = None
+    if operator == "person" and meshcat is not None:
+        person = MeshcatJoystick.AddToBuilder(builder=builder, meshcat=meshcat)
     if operator == "simulated":
         source = SimulatedOperator.AddToBuilder(
             builder=builder,
@@ -148,17 +151,21 @@ def build_shared_autonomy(
     builder.Connect(navigator.GetOutputPort("navigation_state"), monitor.GetInputPort("navigation_state"))
     builder.Connect(selector.GetOutputPort("person_in_charge"), monitor.GetInputPort("person_in_charge"))
 
-    if meshcat is not None:
-        _show(builder, station, meshcat, recording)
+    canvases = [(canvas, name) for canvas, name in ((meshcat, "view"), (recording, "recording")) if canvas is not None]
+    if canvases:
+        colors = reach_report(solver, canal, start, rings=2, spokes=6, most_disks=61).colors()
+    for canvas, name in canvases:
+        _show(builder, station, canvas, name)
         CanalView.AddToBuilder(
             builder=builder,
-            meshcat=meshcat,
+            meshcat=canvas,
             canal=canal,
             navigation_state=navigator.GetOutputPort("navigation_state"),
             X_BT=measured["X_BT"],
             options=scenario.navigation,
             X_WB=station.X_WB,
-            disk_colors=reach_report(solver, canal, start, rings=2, spokes=6, most_disks=61).colors(),
+            disk_colors=colors,
+            name=f"canal_{name}",
         )
     log = RunLog(
         builder,
@@ -179,14 +186,15 @@ def build_shared_autonomy(
     return SharedAutonomy(diagram, station, navigator, ik, monitor, selector, log, start, tuple(holds), recorder)
 
 
-def _show(builder: DiagramBuilder, station: LioStation, meshcat: Meshcat, recording: bool) -> None:
-    """Draw robot, things and items."""
+def _show(builder: DiagramBuilder, station: LioStation, meshcat: Meshcat, name: str) -> None:
+    """Draw robot, things and items; `name` is `view` or `recording`."""
     query = station.GetOutputPort("geometry_query")
-    visualizer = builder.AddNamedSystem("scene_view", MeshcatVisualizer(meshcat, MeshcatVisualizerParams()))
+    visualizer = builder.AddNamedSystem(f"scene_{name}", MeshcatVisualizer(meshcat, MeshcatVisualizerParams()))
     builder.Connect(query, visualizer.query_object_input_port())
     soft = station.scene.soft_items
     if soft:
-        view = builder.AddNamedSystem("soft_view", SoftView(items=soft, meshcat=meshcat, recording=recording))
+        soft_view = SoftView(items=soft, meshcat=meshcat, recording=name == "recording")
+        view = builder.AddNamedSystem(f"soft_{name}", soft_view)
         builder.Connect(query, view.GetInputPort("query_object"))
 
 

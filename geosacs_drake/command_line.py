@@ -12,6 +12,7 @@ from typing import NoReturn
 import tyro
 
 from canal.errors import GeosacsError, InputError
+from geosacs_drake.streams import unbroken_streams
 
 
 class ExitStatus(IntEnum):
@@ -22,7 +23,8 @@ class ExitStatus(IntEnum):
     NOT_DONE = 1
     """The task was not done."""
     BAD_INPUT = 2
-    """Input that cannot be used; one line on standard error says what and how to mend it."""
+    """Input that cannot be used, a file that could not be written, or a run that something inside it ended; one line on
+    standard error says what, and how to mend it."""
 
 
 def parse_options[T](options_type: type[T], prog: str, arguments: Sequence[str] | None = None) -> T:
@@ -52,14 +54,39 @@ def _first_sentence(box: str) -> str:
     return " ".join(words).rstrip(".") or "the options cannot be read"
 
 
-def end(main: Callable[[], ExitStatus], prog: str) -> NoReturn:
-    """Run a command's `main` and leave with its status; an error of ours becomes one line and status 2."""
+def status_of(main: Callable[[], ExitStatus], prog: str) -> ExitStatus:
+    """The status of a command's `main`; what it cannot use becomes one line on standard error."""
     try:
-        status = main()
+        return main()
     except GeosacsError as error:
-        print(f"{prog}: {error}", file=sys.stderr)
-        status = ExitStatus.BAD_INPUT
+        words = str(error)
+    except OSError as error:  # a file that no reader or writer of ours has asked about
+        words = f"{error.filename or 'a file'}: {error.strerror or error}"
+    except MemoryError:
+        words = "the memory does not suffice: give less"
     except KeyboardInterrupt:
         print(f"{prog}: stopped", file=sys.stderr)
-        status = ExitStatus.NOT_DONE
+        return ExitStatus.NOT_DONE
+    except SystemExit as error:
+        if not isinstance(error.code, str):
+            raise
+        words = error.code  # Drake's way to say that a condition of its own does not hold
+    print(f"{prog}: {one_line(words)}", file=sys.stderr)
+    return ExitStatus.BAD_INPUT
+
+
+def end(main: Callable[[], ExitStatus], prog: str) -> NoReturn:
+    """Run a command's `main` and leave with its status, whoever reads or does not read what it prints."""
+    with unbroken_streams():
+        status = status_of(main, prog)
     sys.exit(int(status))
+
+
+def one_line(text: str) -> str:
+    """Text from anywhere as one line of a message, no longer than `LONGEST_LINE`."""
+    words = " ".join("".join(c if c.isprintable() else " " for c in text).split())
+    return words if len(words) <= LONGEST_LINE else f"{words[: LONGEST_LINE - 2]} …"
+
+
+LONGEST_LINE = 1000
+"""Letters of a message; what a file holds may be quoted in it, and may be long."""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import webbrowser
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated
@@ -19,9 +19,11 @@ from canal.quality import CanalQuality, canal_quality
 from canal.refinement import SupportPlane
 from canal.surface import CanalSurface
 from geosacs_drake.command_line import ExitStatus, end, parse_options
+from geosacs_drake.outputs import Output, check_outputs, say_failures, write_each
 
 PROG = "geosacs_drake.learn"
 _N_STAGES = 4
+PICTURES = (".png", ".pdf", ".svg")
 
 
 @dataclass(frozen=True)
@@ -66,9 +68,7 @@ def main(options: LearnOptions) -> ExitStatus:
     """
     if not options.demonstrations:
         raise InputError("no demonstrations; give two or more files, .npz or .csv")
-    for endings, output in ((".npz", options.output), (".html", options.html), (".png .pdf .svg", options.plot)):
-        if output is not None and output.suffix not in endings.split():
-            raise InputError(f"{output}: give a name that ends in {' or '.join(endings.split())}")
+    check_outputs(outputs_of(options), options.demonstrations)
     demonstrations = [load_demonstration(path) for path in options.demonstrations]
     learning = LearningOptions(
         step=options.step,
@@ -86,15 +86,37 @@ def main(options: LearnOptions) -> ExitStatus:
             bar.update()
 
         canal = learn_canal(demonstrations, learning, progress)
-    print("\n".join(report(canal, canal_quality(canal))))
+    said = report(canal, canal_quality(canal))
+    recorded = [d.position for d in demonstrations]
+    failures = write_each(_writers(canal, recorded, options, said))
+    print("\n".join(said), flush=True)
+    say_failures(PROG, failures)
+    if options.view:
+        _view(_page(canal, recorded), options.port)
+    return ExitStatus.BAD_INPUT if failures else ExitStatus.DONE
+
+
+def outputs_of(options: LearnOptions) -> list[Output]:
+    """The files that it will write, those beside the named ones included."""
+    from geosacs_drake.plotting import frames_path
+    from geosacs_drake.reach_plot import reach_path
+
+    outputs = []
     if options.output is not None:
-        canal.save(options.output)
-        print(f"canal written to {options.output}")
-    if options.reach:
-        _show_reach(canal, options)
-    if options.plot is not None or options.html is not None or options.view:
-        _show(canal, [d.position for d in demonstrations], options)
-    return ExitStatus.DONE
+        outputs.append(Output("-o", options.output, (".npz",)))
+    if options.html is not None:
+        outputs.append(Output("--html", options.html, (".html", ".htm")))
+    if options.plot is not None:
+        outputs.append(Output("--plot", options.plot, PICTURES))
+        outputs.append(Output("--plot", frames_path(options.plot), PICTURES))
+    if options.reach and (beside := _beside(options)) is not None:
+        outputs.append(Output("--reach", reach_path(beside), PICTURES))
+    return outputs
+
+
+def _beside(options: LearnOptions) -> Path | None:
+    """What the picture of the reach lies beside."""
+    return options.plot or (options.output and options.output.with_suffix(".png"))
 
 
 def report(canal: CanalSurface, quality: CanalQuality) -> list[str]:
@@ -125,26 +147,31 @@ def report(canal: CanalSurface, quality: CanalQuality) -> list[str]:
     return [f"{name:16}{text}" for name, text in rows] + [f"warning: {line}" for line in canal.warnings]
 
 
-def _show_reach(canal: CanalSurface, options: LearnOptions) -> None:
-    """What the Lio reaches of the canal, in words and, where there is a name for it, in a picture."""
-    from geosacs_drake.reach_plot import lio_reach, plot_reach, reach_path
+def _writers(
+    canal: CanalSurface, recorded: Sequence[np.ndarray], options: LearnOptions, said: list[str]
+) -> list[tuple[str, Callable[[], None]]]:
+    """What writes each file; each adds to `said` what it has to say once it is done."""
 
-    reach = lio_reach(canal)
-    print("\n".join(reach.describe()))
-    beside = options.plot or (options.output and options.output.with_suffix(".png"))
-    if beside is not None:
-        plot_reach(reach_path(beside), canal, reach)
-        print(f"reach drawn to {reach_path(beside)}")
+    def save() -> None:
+        assert options.output is not None
+        canal.save(options.output)
+        said.append(f"canal written to {options.output}")
 
+    def reach() -> None:
+        from geosacs_drake.reach_plot import lio_reach, plot_reach, reach_path
 
-def _show(canal: CanalSurface, recorded: Sequence[np.ndarray], options: LearnOptions) -> None:
-    """Pictures and the page, with a tour of the canal by a scripted thumb."""
-    from canal.tour import tour
+        found = lio_reach(canal)
+        said.extend(found.describe())
+        if (beside := _beside(options)) is not None:
+            plot_reach(reach_path(beside), canal, found)
+            said.append(f"reach drawn to {reach_path(beside)}")
 
-    travelled = tour(canal)
-    if options.plot is not None:
+    def plot() -> None:
+        from canal.tour import tour
         from geosacs_drake.plotting import frames_path, plot_canal, plot_frames
 
+        assert options.plot is not None
+        travelled = tour(canal)
         plot_canal(
             options.plot,
             canal,
@@ -154,24 +181,45 @@ def _show(canal: CanalSurface, recorded: Sequence[np.ndarray], options: LearnOpt
             title="Canal, with a tour by a scripted thumb",
         )
         plot_frames(frames_path(options.plot), canal)
-        print(f"pictures drawn to {options.plot} and {frames_path(options.plot)}")
-    if options.html is None and not options.view:
-        return
-    from geosacs_drake.canal_html import canal_page, serve, write_html
+        said.append(f"pictures drawn to {options.plot} and {frames_path(options.plot)}")
 
-    page = canal_page(canal, recorded=recorded, path=travelled.position, corrections=travelled.corrections)
-    if options.html is not None:
-        write_html(options.html, page)
-        print(f"page written to {options.html}")
-    if options.view:
-        with serve(page, options.port) as server:
-            address = f"http://127.0.0.1:{server.server_address[1]}/"
-            print(f"the canal is shown at {address} (Ctrl-C ends)", flush=True)
-            webbrowser.open(address)
-            try:
-                server.serve_forever()
-            except KeyboardInterrupt:
-                print()
+    def html() -> None:
+        from geosacs_drake.canal_html import write_html
+
+        assert options.html is not None
+        write_html(options.html, _page(canal, recorded))
+        said.append(f"page written to {options.html}")
+
+    wanted = (
+        ("-o", save, options.output),
+        ("--reach", reach, options.reach or None),
+        ("--plot", plot, options.plot),
+        ("--html", html, options.html),
+    )
+    return [(flag, write) for flag, write, output in wanted if output is not None]
+
+
+def _page(canal: CanalSurface, recorded: Sequence[np.ndarray]) -> str:
+    """The canal as a page, with a tour of it by a scripted thumb."""
+    from canal.tour import tour
+    from geosacs_drake.canal_html import canal_page
+
+    travelled = tour(canal)
+    return canal_page(canal, recorded=recorded, path=travelled.position, corrections=travelled.corrections)
+
+
+def _view(page: str, port: int) -> None:
+    """Show a page on localhost until Ctrl-C."""
+    from geosacs_drake.canal_html import serve
+
+    with serve(page, port) as server:
+        address = f"http://127.0.0.1:{server.server_address[1]}/"
+        print(f"the canal is shown at {address} (Ctrl-C ends)", flush=True)
+        webbrowser.open(address)
+        try:
+            server.serve_forever()
+        except KeyboardInterrupt:
+            print()
 
 
 if __name__ == "__main__":

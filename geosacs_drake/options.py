@@ -8,7 +8,7 @@ from pydantic import Field
 from canal.errors import InputError
 from canal.options import COMMAND_LINE, options
 
-PEOPLE = ("gamepad", "keyboard")
+PEOPLE = ("gamepad", "keyboard", "person")
 """Operators that need a browser."""
 
 
@@ -17,8 +17,8 @@ class RunOptions:
     """Load a washing machine, or move things from table to table, by shared autonomy on a canal."""
 
     operator: str = "simulated"
-    """simulated, gamepad, keyboard, or a file with a recorded joystick (.npz or .csv; a log will do). In the browser,
-    whoever moves a stick or presses a key takes over."""
+    """simulated, a person at the page (gamepad, keyboard or person: each means all of its controls), or a file with a
+    recorded joystick (.npz or .csv; a log will do). Only where a person is asked for does the page take commands."""
     headless: bool = False
     """Without a browser, as fast as it goes, with a progress bar."""
     realtime_rate: Annotated[float, Field(ge=0, lt=1e6)] | None = None
@@ -53,12 +53,6 @@ class RunOptions:
             raise InputError("--demos and --canal exclude each other: give one of them")
         if len(self.demos) == 1:
             raise InputError("--demos got one file; a canal needs at least two demonstrations")
-        for name in ("summary", "log", "record", "video"):
-            path = getattr(self, name)
-            if path is not None and not path.parent.is_dir():
-                raise InputError(f"--{name} {path}: there is no folder {path.parent}; make it first")
-            if path is not None and path.is_dir():
-                raise InputError(f"--{name} {path}: is a folder; give a file")
 
     @property
     def rate(self) -> float:

@@ -6,57 +6,87 @@ import sys
 from collections.abc import Sequence
 from typing import NoReturn
 
+from pydrake.geometry import Meshcat
 from tqdm import tqdm
 
-from canal.files import write_npz
+from canal.surface import CanalSurface
 from diagrams.joystick_recording import load_recording
 from diagrams.layout import base_pose
 from diagrams.meshcat_joystick import CONTROLS
 from diagrams.meshcat_recording import Recording
 from diagrams.meshcat_server import leave, start_meshcat
-from diagrams.run_log import named_signals
-from diagrams.scenario import load_scenario, with_items
+from diagrams.scenario import Scenario, load_scenario, with_items
 from diagrams.shared_autonomy import build_shared_autonomy
-from geosacs_drake.command_line import ExitStatus, end, parse_options
+from geosacs_drake.command_line import ExitStatus, end, parse_options, status_of
+from geosacs_drake.interrupts import Interrupts, Phase
 from geosacs_drake.options import PEOPLE, RunOptions
 from geosacs_drake.prepare_canal import prepare_canal
+from geosacs_drake.run_files import check_run_files, finish
 from geosacs_drake.simulate import Progress, simulate
-from geosacs_drake.summary import describe, summarize, write_summary
 
 
-def main(task: str, arguments: Sequence[str] | None = None) -> NoReturn:
-    """Run a task as the command line says (or `arguments`), and leave with its exit status."""
-    prog = f"run_{task}"
-    end(lambda: run(parse_options(RunOptions, prog, arguments), task), prog)
+def main(task: str, arguments: Sequence[str] | None = None, prog: str | None = None) -> NoReturn:
+    """Run a task as the command line says (or `arguments`), and leave with its exit status.
+
+    Args:
+        task: `laundry` or `relocation`.
+        arguments: what follows the command's name; None: what the process was given.
+        prog: the command's name, for messages.
+    """
+    prog = prog or f"run_{task}"
+    end(lambda: run(parse_options(RunOptions, prog, arguments), task, prog), prog)
 
 
-def run(options: RunOptions, task: str) -> ExitStatus:
+def run(options: RunOptions, task: str, prog: str) -> ExitStatus:
     """Run a task as the options say.
+
+    Args:
+        options: what the command line says.
+        task: whose scenario is taken where the options name none.
+        prog: the command's name, for messages.
 
     Raises:
         InputError: an option, a file or a scenario cannot be used.
+        SystemExit: at the end, with the status.
     """
-    scenario = load_scenario(options.scenario or task)
-    if options.items is not None:
-        scenario = with_items(scenario, options.items)
-    canal = prepare_canal(scenario, options)
-    meshcat = None
-    if not options.headless or options.record is not None:
-        meshcat = start_meshcat(port=options.port, X_WB=base_pose(scenario.robot))
-    recording = None
-    if meshcat is not None and options.record is not None:
-        recording = Recording(meshcat, title=scenario.description or scenario.task)
+    with Interrupts() as interrupts:
+        scenario = load_scenario(options.scenario or task)
+        if options.items is not None:
+            scenario = with_items(scenario, options.items)
+        check_run_files(options, scenario)
+        canal = prepare_canal(scenario, options)
+        page = None if options.headless else start_meshcat(port=options.port, X_WB=base_pose(scenario.robot))
+        # From here on a browser may be connected, for which Meshcat's destructor would wait.
+        status = status_of(lambda: _run(options, scenario, canal, page, interrupts, prog), prog)
+        leave(status, page)
+
+
+def _run(
+    options: RunOptions,
+    scenario: Scenario,
+    canal: CanalSurface,
+    page: Meshcat | None,
+    interrupts: Interrupts,
+    prog: str,
+) -> ExitStatus:
+    recorded, recording = None, None
+    if options.record is not None:
+        recorded = start_meshcat(X_WB=base_pose(scenario.robot), hidden=True)
+        recording = Recording(recorded, title=scenario.description or scenario.task)
+    operator = operator_of(options)
     system = build_shared_autonomy(
         scenario=scenario,
         canal=canal,
-        operator=operator_of(options),
+        operator=operator,
         seed=options.seed,
-        meshcat=meshcat,
-        recording=options.record is not None,
+        meshcat=page,
+        recording=recorded,
         video=options.video,
     )
-    if meshcat is not None and not options.headless:
-        print(f"watch and steer at {meshcat.web_url()}\n{CONTROLS}", flush=True)
+    if page is not None:
+        steer = f" and steer at {page.web_url()}\n{CONTROLS}" if operator == "person" else f" at {page.web_url()}"
+        print(f"watch{steer}", flush=True)
+    interrupts.begin(Phase.RUNNING)
     with _Bar(options) as bar:
         result = simulate(
             system,
@@ -65,20 +95,11 @@ def run(options: RunOptions, task: str) -> ExitStatus:
             item_names=[item.name for item in scenario.items],
             duration=options.duration,
             rate=options.rate,
+            asked_to_end=lambda: interrupts.asked,
             report=bar.show,
         )
-    summary = summarize(result)
-    print(describe(summary), flush=True)
-    if options.summary is not None:
-        write_summary(options.summary, summary)
-    if options.log is not None:
-        write_npz(options.log, **named_signals(result.signals))
-    if recording is not None and options.record is not None:
-        recording.save(options.record)
-    if system.video is not None:
-        system.video.save()
-    status = ExitStatus.DONE if summary["success"] else ExitStatus.NOT_DONE
-    leave(status, meshcat)
+    interrupts.begin(Phase.WRITING)
+    return finish(options=options, result=result, recording=recording, film=system.video, prog=prog)
 
 
 def operator_of(options: RunOptions):

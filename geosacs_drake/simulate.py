@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import gc
-import signal
-import threading
 import time
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -15,6 +13,7 @@ from pydrake.systems.framework import Context, EventStatus
 
 from diagrams.rest import Rest
 from diagrams.shared_autonomy import SharedAutonomy
+from geosacs_drake.command_line import one_line
 from geosacs_drake.summary import RunResult
 
 CHUNK_S = 0.5
@@ -38,6 +37,7 @@ def simulate(
     item_names: list[str],
     duration: float,
     rate: float = 0.0,
+    asked_to_end: Callable[[], bool] = lambda: False,
     report: Callable[[Progress], None] = lambda progress: None,
     watch: Callable[[Context], None] = lambda context: None,
 ) -> RunResult:
@@ -50,11 +50,12 @@ def simulate(
         item_names: likewise, in the scenario's order.
         duration: longest simulated time [s].
         rate: real-time rate to aim at; 0 for as fast as possible.
+        asked_to_end: looked at after each step of the plant.
         report: called after each half second.
         watch: called after each step of the plant with the diagram's context, to measure what no port tells.
 
     Returns:
-        What happened; a simulation that fails ends with the reason, and keeps what it had.
+        What happened; a simulation that something inside it ends says so in `fault`, and keeps what it had.
     """
     simulator = Simulator(system.diagram)
     simulator.set_target_realtime_rate(rate)
@@ -69,36 +70,39 @@ def simulate(
     def rest_and_watch(root_context: Context) -> EventStatus:
         status = rest(root_context)
         watch(root_context)
-        return status
+        return EventStatus.ReachedTermination(system.diagram, "interrupted") if asked_to_end() else status
 
     simulator.set_monitor(rest_and_watch)
     root = simulator.get_context()
     monitor_context = system.monitor.GetMyContextFromRoot(root)
-    interrupted = threading.Event()
     factors: list[float] = []
-    reason = f"time is up after {duration:g} s"
-    with _interrupts(interrupted):
-        try:
-            system.take_first_measurements(simulator.get_mutable_context())
-            simulator.Initialize()
-            gc.freeze()  # what is built stays: no collection looks through it again
-            while root.get_time() < duration - 1e-9:
-                begin, simulated = time.perf_counter(), root.get_time()
-                status = simulator.AdvanceTo(min(duration, simulated + CHUNK_S))
-                elapsed = time.perf_counter() - begin
-                if root.get_time() - simulated > 0.99 * CHUNK_S:
-                    factors.append((root.get_time() - simulated) / elapsed)
-                placed = system.monitor.GetOutputPort("placed_times").Eval(monitor_context)
-                report(Progress(root.get_time(), int((placed >= 0).sum()), len(placed)))
-                if status.reason() == SimulatorStatus.ReturnReason.kReachedTerminationCondition:
-                    reason = status.message()
-                    break
-                if interrupted.is_set():
-                    reason = "interrupted"
-                    break
-        except RuntimeError as error:  # of Drake's solvers: the plant's state has left what can be simulated
-            reason = f"the simulation failed: {' '.join(str(error).split())}"
-    return _result(system, root, task, seed, item_names, reason, np.array(factors))
+    reason, fault = f"time is up after {duration:g} s", False
+    try:
+        system.take_first_measurements(simulator.get_mutable_context())
+        simulator.Initialize()
+        gc.freeze()  # what is built stays: no collection looks through it again
+        while root.get_time() < duration - 1e-9:
+            begin, simulated = time.perf_counter(), root.get_time()
+            status = simulator.AdvanceTo(min(duration, simulated + CHUNK_S))
+            elapsed = time.perf_counter() - begin
+            if root.get_time() - simulated > 0.99 * CHUNK_S:
+                factors.append((root.get_time() - simulated) / elapsed)
+            placed = system.monitor.GetOutputPort("placed_times").Eval(monitor_context)
+            report(Progress(root.get_time(), int((placed >= 0).sum()), len(placed)))
+            if status.reason() == SimulatorStatus.ReturnReason.kReachedTerminationCondition:
+                reason = status.message()
+                break
+    except (Exception, SystemExit) as error:  # Drake says `SystemExit` where a condition of its own does not hold
+        reason, fault = f"{_what_failed(error)} at {root.get_time():.2f} s: {one_line(str(error))}", True
+    return _result(system, root, task, seed, item_names, reason, fault, np.array(factors))
+
+
+def _what_failed(error: BaseException) -> str:
+    if "websocket thread" in str(error):
+        return "the page failed (a client sent it what Meshcat cannot read)"
+    if isinstance(error, RuntimeError):  # of Drake's solvers: the plant's state has left what can be simulated
+        return "the simulation failed"
+    return f"the simulation failed ({type(error).__name__})"
 
 
 def _result(
@@ -108,6 +112,7 @@ def _result(
     seed: int,
     item_names: list[str],
     reason: str,
+    fault: bool,
     factors: np.ndarray,
 ) -> RunResult:
     context = system.monitor.GetMyContextFromRoot(root)
@@ -124,20 +129,5 @@ def _result(
         max_penetration_m=float(penetration),
         signals=system.log.signals(root),
         realtime_factors=factors,
+        fault=fault,
     )
-
-
-class _interrupts:
-    """While it lasts, Ctrl-C and a polite kill only set an event, so that what was measured is still written."""
-
-    def __init__(self, event: threading.Event) -> None:
-        self._event = event
-
-    def __enter__(self) -> None:
-        if threading.current_thread() is threading.main_thread():
-            handle = lambda *_: self._event.set()  # noqa: E731
-            self._before = {s: signal.signal(s, handle) for s in (signal.SIGINT, signal.SIGTERM)}
-
-    def __exit__(self, *_: object) -> None:
-        for number, handler in getattr(self, "_before", {}).items():
-            signal.signal(number, handler)

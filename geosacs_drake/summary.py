@@ -37,6 +37,8 @@ class RunResult:
     """Raw signals of `diagrams.run_log.RunLog`."""
     realtime_factors: np.ndarray
     """Simulated over elapsed time of each half second that was simulated."""
+    fault: bool = False
+    """Whether something inside the run ended it, and not the task, the operator, a person or the clock."""
 
 
 def summarize(result: RunResult) -> dict[str, Any]:

@@ -68,7 +68,7 @@ def _bad_files(folder):
         (["--margin", "wide"], "margin"),
         (["--margin", "-1"], "margin"),
         (["-o", "c.txt"], ".npz"),
-        (["-o", "nowhere/c.npz"], "cannot be written"),
+        (["-o", "nowhere/c.npz"], "no folder"),
         (["--plot", "c.doc"], ".png"),
         (["--support-plane", "0", "0", "1", "5"], "support plane"),
     ],
