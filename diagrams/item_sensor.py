@@ -36,7 +36,7 @@ class ItemSensor(LeafSystem):
         self._soft = [k for k, item in enumerate(scene.items) if isinstance(item, SoftItem)]
         self._soft_items = scene.soft_items
         self._rigid = [k for k, item in enumerate(scene.items) if isinstance(item, RigidItem)]
-        self._bodies = [int(item.body.index()) for item in scene.rigid_items]
+        self._bodies = [int(item.index) for item in scene.rigid_items]
         self._rigid_bounds = BodyBounds([item.extents for item in scene.rigid_items]) if self._rigid else None
         n = len(scene.items)
         self._poses = self.DeclareAbstractInputPort("body_poses", AbstractValue.Make([RigidTransform()]))
@@ -59,7 +59,7 @@ class ItemSensor(LeafSystem):
         rows = []
         for item in self._items:
             if isinstance(item, RigidItem):
-                rows.append(pose_to_vector(poses[int(item.body.index())]))
+                rows.append(pose_to_vector(poses[int(item.index)]))
             else:
                 rows.append(np.concatenate([self._nodes(context, item).mean(axis=0), [1.0, 0.0, 0.0, 0.0]]))
         output.SetFromVector(np.concatenate(rows))
@@ -79,7 +79,7 @@ class ItemSensor(LeafSystem):
         speeds = np.zeros(len(self._items))
         for k, item in enumerate(self._items):
             if isinstance(item, RigidItem):
-                speeds[k] = np.linalg.norm(velocities[int(item.body.index())].translational())
+                speeds[k] = np.linalg.norm(velocities[int(item.index)].translational())
         if self._soft:
             before, now = context.get_discrete_state(self._middles).value().reshape(2, -1, 3)
             moved = np.linalg.norm(now - before, axis=1) / PERIOD

@@ -9,7 +9,7 @@ from pydrake.geometry import Cylinder, SceneGraph
 from pydrake.math import RigidTransform
 from pydrake.multibody.parsing import Parser
 from pydrake.multibody.plant import MultibodyPlant
-from pydrake.multibody.tree import ModelInstanceIndex, RigidBody
+from pydrake.multibody.tree import BodyIndex, ModelInstanceIndex, RigidBody
 
 from diagrams.layout import Spot, base_pose, draw_layout, yaw_pose
 from diagrams.scenario import Item, Robot, Scenario, Thing
@@ -27,11 +27,21 @@ MARK_COLORS = {"apple": (0.83, 0.14, 0.13), "cup": (0.05, 0.55, 0.60), "cube": (
 
 @dataclass(frozen=True)
 class RigidItem:
-    """An item that is one rigid body."""
+    """An item that is one rigid body.
+
+    It is named by its index: a `RigidBody` in Python keeps its plant alive where the garbage collector cannot see it,
+    and a system that held one would keep itself, its diagram and all of the plant's memory for ever.
+    """
 
     name: str
-    body: RigidBody
+    plant: MultibodyPlant
+    index: BodyIndex
     extents: list[Extent]
+
+    @property
+    def body(self) -> RigidBody:
+        """The body; not to be kept by what is part of the diagram."""
+        return self.plant.get_body(self.index)
 
 
 @dataclass
@@ -128,4 +138,4 @@ def _add_item(
     height = -float(BodyBounds([extents])([RigidTransform()])[0, 2])
     X.set_translation(start.position + [0, 0, height + DROP])
     plant.SetDefaultFloatingBaseBodyPose(body, X)
-    return height, RigidItem(item.name, body, extents)
+    return height, RigidItem(item.name, plant, index, extents)
