@@ -4,7 +4,7 @@ PYTHONS := python3.13 python3.12 python3
 PY := .venv/bin/python
 ARGS ?=
 
-.PHONY: setup laundry relocation test lint acceptance clean
+.PHONY: setup laundry relocation test lint acceptance fuzz clean
 
 setup: .venv/.installed
 
@@ -35,6 +35,10 @@ lint: setup
 acceptance: setup
 	$(PY) -m pip install --quiet --disable-pip-version-check -c constraints.txt -e ".[bench]"
 	$(PY) -m benchmarks.acceptance $(ARGS)
+
+# Random sticks, scenarios and canals; `make fuzz ARGS="--seconds 7200"`.
+fuzz: setup
+	$(PY) -m benchmarks.fuzz $(ARGS)
 
 # `make bench-NAME` runs benchmarks/bench_NAME.py, with the rivals in an extra of their own.
 bench-%: setup

@@ -53,7 +53,7 @@ def test_jobs_run_in_processes_of_their_own_and_one_that_fails_harms_no_other(tm
     jobs = [Job(square, (3,), 0.1), Job(failing, ("exit",), 0.3), Job(failing, ("loud",), 0.2), Job(square, (-2,), 0.1)]
     seen = []
     found = run_jobs(
-        jobs, at_a_time=2, folder=tmp_path, report=lambda job, _, failure: seen.append((job.name, failure))
+        jobs, at_a_time=1, folder=tmp_path, report=lambda job, _, failure: seen.append((job.name, failure))
     )
     assert [found[k].get("square") for k in range(4)] == [9, None, None, 4]
     assert found[0]["threads"] == 1, "one thread of linear algebra a job"
