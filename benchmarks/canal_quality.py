@@ -14,7 +14,8 @@ import numpy as np
 from scipy.spatial.transform import Rotation
 
 from canal.demonstration import Demonstration, load_demonstration
-from canal.learning import LearningOptions, learn_canal
+from canal.learning import learn_canal
+from canal.learning_options import LearningOptions
 from canal.quality import canal_quality, deviations, undershoot
 from canal.refinement import SupportPlane, dips
 from canal.retargeting import shape_cost

@@ -11,6 +11,7 @@ import numpy as np
 
 from canal.errors import InputError
 from canal.files import write_and_rename, write_npz
+from canal.options import options
 from canal.reading import as_numbers, read_csv, read_npz
 
 SAMPLE_RATE_HZ = 20.0  # the paper records at 20 Hz; assumed where a file has no time stamps
@@ -24,7 +25,7 @@ SECONDS = {"s": 1.0, "ms": 1e-3, "us": 1e-6, "ns": 1e-9}
 _WHAT = "a demonstration (.npz or .csv)"
 
 
-@dataclass(frozen=True)
+@options("recording", frozen=True)
 class RecordingFormat:
     """How a recording holds its numbers, where it is not as ours.
 
@@ -40,6 +41,10 @@ class RecordingFormat:
     time_unit: Literal["s", "ms", "us", "ns"] = "s"
     quaternion_order: Literal["wxyz", "xyzw"] = "wxyz"
     drop_bad_samples: bool = False
+
+
+AS_OURS = RecordingFormat()
+"""Metres, seconds, w, x, y, z, and every sample is used."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -140,7 +145,7 @@ def _as_floats(values, label: str, name: str) -> np.ndarray:
         raise InputError(f"{name}: {label} is not an array of numbers") from None
 
 
-def load_demonstration(path: str | os.PathLike, recorded: RecordingFormat = RecordingFormat()) -> Demonstration:
+def load_demonstration(path: str | os.PathLike, recorded: RecordingFormat = AS_OURS) -> Demonstration:
     """Read a demonstration from `.npz` (`position`, `orientation`, optionally `time`) or `.csv`.
 
     A CSV has the header `t,x,y,z,qw,qx,qy,qz`, in any order. Nothing is ever unpickled.

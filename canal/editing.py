@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import numpy as np
 from scipy.interpolate import CubicHermiteSpline, CubicSpline
@@ -11,15 +12,16 @@ from scipy.optimize import linear_sum_assignment
 from canal.alignment import align_to, sample
 from canal.demonstration import Demonstration
 from canal.errors import InputError
-from canal.learning import N_POINTS, LearningOptions, build_surface, disk_count, unit_tangents
-from canal.refinement import SupportPlane
+from canal.learning import N_POINTS, build_surface, disk_count, unit_tangents
+from canal.learning_options import LearningOptions
 from canal.splines import arc_length, fit_spline, knots_every, rotation_curve, slerp, uniform_in_arc
 from canal.surface import CanalSurface
 from canal.trimming import trim
 
 LARGEST_GAP_M = 0.1  # between canals that are joined; a wider one is a motion nobody has shown
 _BRIDGE_SHARE = 0.08  # of the shorter canal, given up on either side of a joint for a smooth passage
-_KNOTS = 0.1  # h, as in learning
+# Of the second of two joined canals, what the first's need not be the same as.
+_OWN = ("preset", "margin", "contain_raw", "n_disks", "support_planes", "x_global")
 
 
 def reverse(canal: CanalSurface) -> CanalSurface:
@@ -49,7 +51,8 @@ def cut(canal: CanalSurface, first: float, last: float) -> CanalSurface:
         np.stack([sample(curve, keep) for curve in canal.demonstrations]),
         np.stack([_unit(sample(turned, keep)) for turned in canal.demonstration_orientations]),
         moving_time_s=canal.moving_time_s * share,
-        source=keep,
+        share=share,
+        beyond=beyond_data(canal, keep),
     )
 
 
@@ -92,13 +95,32 @@ def join(first: CanalSurface, second: CanalSurface) -> CanalSurface:
     turns = [
         slerp(np.tile(p, (len(t), 1)), np.tile(q, (len(t), 1)), t) for p, q in zip(qa[:, i], qb[:, j], strict=True)
     ]
-    return rebuild(
+    common = replace(
+        first.options,
+        margin=min(first.options.margin, second.options.margin),
+        contain_raw=first.options.contain_raw and second.options.contain_raw,
+        support_planes=tuple(dict.fromkeys(first.support_planes + second.support_planes)),
+    )
+    beyond = [beyond_data(canal, np.arange(canal.n_disks), common.margin) for canal in (first, second)]
+    joined = rebuild(
         first,
         np.concatenate([a[:, : i + 1], np.stack(bridges), b[:, j:]], axis=1),
         np.concatenate([qa[:, : i + 1], np.stack(turns), qb[:, j:]], axis=1),
         moving_time_s=first.moving_time_s + second.moving_time_s,
-        support_planes=tuple(dict.fromkeys(first.support_planes + second.support_planes)),
+        share=1.0 + second.length / first.length,
+        beyond=np.interp(
+            np.arange(i + len(t) + second.n_disks - j + 1),
+            [*range(i + 1), *range(i + len(t) + 1, i + len(t) + second.n_disks - j + 1)],
+            np.concatenate([beyond[0][: i + 1], beyond[1][j:]]),
+        ),
+        options=common,
     )
+    differ = [key for key in vars(common) if key not in _OWN and getattr(second.options, key) != getattr(common, key)]
+    if differ:
+        told = ", ".join(f"{key} {getattr(second.options, key)} instead of {getattr(common, key)}" for key in differ)
+        line = f"the second of the joined canals was learned with {told}: the first's is used for both"
+        joined = joined.with_(warnings=(*joined.warnings, line))
+    return joined
 
 
 def add_demonstration(canal: CanalSurface, demonstration: Demonstration) -> CanalSurface:
@@ -107,11 +129,12 @@ def add_demonstration(canal: CanalSurface, demonstration: Demonstration) -> Cana
     Raises:
         InputError: the demonstration does not move, or runs from place to pick.
     """
-    motion = trim(demonstration, N_POINTS)
+    learned = canal.options
+    motion = trim(demonstration, N_POINTS, learned.soft_trimming)
     disks = np.linspace(0, canal.n_disks - 1, N_POINTS)
-    warp = align_to(sample(canal.directrix, disks), motion)
-    knots, at = knots_every(_KNOTS), np.linspace(0.0, 1.0, canal.n_disks)
-    position = fit_spline(knots, sample(motion.position, warp), interpolate=False)(at)
+    warp = align_to(sample(canal.directrix, disks), motion, learned.band, learned.warp_smoothing)
+    knots, at = knots_every(learned.step), np.linspace(0.0, 1.0, canal.n_disks)
+    position = fit_spline(knots, sample(motion.position, warp), learned.interpolate)(at)
     turned = sample(motion.orientation, warp[np.round(knots * (N_POINTS - 1)).astype(int)])
     n = len(canal.demonstrations)
     return rebuild(
@@ -119,7 +142,8 @@ def add_demonstration(canal: CanalSurface, demonstration: Demonstration) -> Cana
         np.concatenate([canal.demonstrations, position[None]]),
         np.concatenate([canal.demonstration_orientations, rotation_curve(knots, _unit(turned), at)[None]]),
         moving_time_s=(n * canal.moving_time_s + motion.moving_time) / (n + 1),
-        source=np.arange(canal.n_disks, dtype=float),
+        beyond=beyond_data(canal, np.arange(canal.n_disks)),
+        raw=[demonstration.position] if learned.contain_raw else None,
     )
 
 
@@ -129,18 +153,22 @@ def rebuild(
     quaternions: np.ndarray,
     *,
     moving_time_s: float,
-    source: np.ndarray | None = None,
-    support_planes: tuple[SupportPlane, ...] | None = None,
+    beyond: np.ndarray,
+    share: float = 1.0,
+    options: LearningOptions | None = None,
+    raw: list[np.ndarray] | None = None,
 ) -> CanalSurface:
     """A canal around aligned demonstrations, with disks uniform in the arc of their mean.
 
     Args:
-        canal: whose options (x_G, planes, ellipses, wider radii) are carried over.
+        canal: whose options are used.
         positions: aligned, at any spacing. Shape (n, M, 3).
         quaternions: unit, sign-continuous. Shape (n, M, 4).
         moving_time_s: of the new canal, [s].
-        source: disks of `canal` that the M points come from, to carry over what its radii hold beyond the data.
-        support_planes: instead of the canal's.
+        beyond: what radii hold beyond the data and the margin at the M points, [m]. Shape (M,).
+        share: length relative to `canal`; a number of disks that was asked for grows or shrinks with it.
+        options: instead of the canal's.
+        raw: further points that must lie in the balls, each (., 3), [m].
     """
     m = positions.shape[1]
     steps = np.linalg.norm(np.diff(positions.mean(axis=0), axis=0), axis=1)
@@ -149,26 +177,38 @@ def rebuild(
     curves = [CubicSpline(u, curve) for curve in positions]
     mean = CubicSpline(u, positions.mean(axis=0))
     u_arc = arc_length(mean)
-    at = uniform_in_arc(mean, disk_count(u_arc[1][-1]), u_arc)
+    learned = options or own_options(canal)
+    if learned.n_disks is not None:
+        learned = replace(learned, n_disks=max(3, round(learned.n_disks * share) // 2 * 2 + 1))
+    at = uniform_in_arc(mean, learned.n_disks or disk_count(u_arc[1][-1]), u_arc)
     place = np.interp(at, u, np.arange(m, dtype=float))
-    widening: np.ndarray | float = 0.0
-    if source is not None:
-        ball = np.linalg.norm(canal.demonstrations - canal.directrix, axis=2).max(axis=0)
-        beyond = np.interp(source, np.arange(canal.n_disks), np.maximum(canal.radii - ball, 0.0))
-        widening = np.interp(place, np.arange(m), beyond)
-    x, y, z = canal.x_global.tolist()
     return build_surface(
         np.stack([curve(at) for curve in curves]),
         np.stack([_unit(sample(turned, place)) for turned in quaternions]),
         tangents=unit_tangents(mean(at, 1)),
         moving_time_s=moving_time_s,
-        options=LearningOptions(
-            x_global=(x, y, z),
-            ellipse=canal.ellipses is not None,
-            support_planes=canal.support_planes if support_planes is None else support_planes,
-        ),
-        widening=widening,
+        options=learned,
+        raw=raw,
+        widening=np.interp(place, np.arange(m), beyond),
     )
+
+
+def own_options(canal: CanalSurface) -> LearningOptions:
+    """How a canal was learned, with the planes, the x_G and the kind of cross-sections that it has now."""
+    x, y, z = canal.x_global.tolist()
+    return replace(
+        canal.options,
+        x_global=(x, y, z),
+        ellipse=canal.ellipses is not None or canal.options.ellipse,
+        support_planes=canal.support_planes,
+    )
+
+
+def beyond_data(canal: CanalSurface, at: np.ndarray, margin: float | None = None) -> np.ndarray:
+    """What a canal's radii hold beyond its data and a margin (its own if None) at continuous disks, [m]."""
+    ball = np.linalg.norm(canal.demonstrations - canal.directrix, axis=2).max(axis=0)
+    margin = canal.options.margin if margin is None else margin
+    return np.interp(at, np.arange(canal.n_disks), np.maximum(canal.radii - ball - margin, 0.0))
 
 
 def _repeated(canal: CanalSurface, n: int) -> tuple[np.ndarray, np.ndarray]:

@@ -88,7 +88,7 @@ def correction_frames(
     Args:
         points: centres, [m]. Shape (N, 3).
         normals: unit, sign-continuous. Shape (N, 3).
-        radii: [m]. Shape (N,).
+        radii: [m], for the bound on the turn of x; zeros for none. Shape (N,).
         x_global: x_G, unit. Shape (3,).
         start: x of the first disk if the whole path runs along x_G; used for nothing else. Shape (3,).
         y_window: number of previous disks whose mean y decides on the sign (10 in the paper).

@@ -4,80 +4,34 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
-from typing import Annotated
 
 import numpy as np
-from pydantic import AfterValidator, Field
+from threadpoolctl import threadpool_limits
 
 from canal import orientation as orient
-from canal.alignment import BAND, WARP_SMOOTHING, align, evenly_moving, sample
+from canal.alignment import align, evenly_moving, sample
 from canal.demonstration import Demonstration
 from canal.ellipses import FEWEST_FOR_ELLIPSES, disk_ellipses
 from canal.errors import InputError
 from canal.frames import correction_frames, perpendicular
-from canal.options import options
-from canal.refinement import SupportPlane, dips, hold_at_planes
-from canal.relaxation import MAX_TILT, crossings, relax_normals, reversals, tilts
+from canal.learning_options import MEASURED, LearningOptions
+from canal.refinement import dips, hold_at_planes
+from canal.relaxation import MAX_TILT, continuous_directions, crossings, relax_normals, reversals, tilts
 from canal.splines import arc_length, fit_spline, knots_every, rotation_curve, uniform_in_arc
 from canal.surface import CanalSurface
 from canal.trimming import trim
 
 DISK_SPACING_M = 0.005
 FEWEST_DISKS, MOST_DISKS = 200, 1000
+SHORT_M = 0.05  # from pick to place; a hand need not be helped over less
 N_POINTS = 201  # M, points of a demonstration during alignment
 WIDE_SPREAD = 2 * math.sin(math.radians(45.0) / 4)  # σ of 45° to either side: their mean is shown by nobody
 MAX_X_TURN = math.radians(6.0)  # of x about n between neighbours: a thumb follows 6° in 5 mm
 
 
-def _odd(n_disks: int) -> int:
-    if n_disks % 2 == 0:
-        raise InputError("give an odd number, so that home is a disk")
-    return n_disks
-
-
-def _direction(vector: tuple[float, float, float]) -> tuple[float, float, float]:
-    if math.hypot(*vector) < 1e-9:
-        raise InputError("give a direction, not zero")
-    return vector
-
-
-@options("learning", frozen=True)
-class LearningOptions:
-    """How a canal is learned. The defaults are what was measured to work on recorded and hard synthetic data.
-
-    Attributes:
-        step: h, distance of knots as a share of the whole (paper: the step of the filter).
-        interpolate: splines through every h-th sample, as in the paper, instead of least squares.
-        band: how far the alignment may run ahead or behind, as a share of the whole.
-        warp_smoothing: σ of the smoothing of the alignment, as a share of the whole.
-        margin: added to every radius, [m].
-        contain_raw: widen radii until every recorded sample lies in a ball, not only every aligned point.
-        ellipse: elliptic cross-sections where three or more demonstrations allow it.
-        n_disks: odd number of disks; None for one every 5 mm, 200 to 1000 of them.
-        x_global: x_G, the direction that corrections along x follow, in B.
-        y_window: number of previous disks whose mean y decides on the sign of the next (paper: 10).
-        support_planes: tables, walls and doors.
-        alpha, beta: of the orientation weight.
-    """
-
-    step: Annotated[float, Field(ge=0.005, le=0.5)] = 0.1
-    interpolate: bool = False
-    band: Annotated[float, Field(ge=0.01, le=1)] = BAND
-    warp_smoothing: Annotated[float, Field(ge=0, le=0.5)] = WARP_SMOOTHING
-    margin: Annotated[float, Field(ge=0, le=1)] = 0.0
-    contain_raw: bool = False
-    ellipse: bool = False
-    n_disks: Annotated[int, Field(ge=3, le=10_001), AfterValidator(_odd)] | None = None
-    x_global: Annotated[tuple[float, float, float], AfterValidator(_direction)] = (1.0, 0.0, 0.0)
-    y_window: Annotated[int, Field(ge=1, le=1000)] = 1
-    support_planes: tuple[SupportPlane, ...] = ()
-    alpha: Annotated[float, Field(ge=0, le=100)] = orient.ALPHA
-    beta: Annotated[float, Field(ge=-10, le=10)] = orient.BETA
-
-
 def learn_canal(
     demonstrations: Sequence[Demonstration],
-    options: LearningOptions = LearningOptions(),
+    options: LearningOptions = MEASURED,
     progress: Callable[[str], None] = lambda stage: None,
 ) -> CanalSurface:
     """Learn a canal surface from two or more demonstrations, in any order.
@@ -95,13 +49,24 @@ def learn_canal(
     """
     if len(demonstrations) < 2:
         raise InputError(f"{len(demonstrations)} demonstration(s); a canal needs at least two, of the same task")
+    with threadpool_limits(
+        limits=1
+    ):  # matrices are small: threads wait for each other three times as long as they work
+        return _learn(demonstrations, options, progress)
+
+
+def _learn(
+    demonstrations: Sequence[Demonstration], options: LearningOptions, progress: Callable[[str], None]
+) -> CanalSurface:
     progress("trimming")
-    motions = [(trim(d, N_POINTS), d) for d in demonstrations]
+    motions = [(trim(d, N_POINTS, options.soft_trimming), d) for d in demonstrations]
     # A canonical order that a rigid motion of all the data does not change; the bytes decide on equal lengths.
     motions.sort(key=lambda m: (len(m[1]), round(m[0].length, 9), m[1].position.tobytes(), m[1].orientation.tobytes()))
     progress("aligning")
     moving = [motion for motion, _ in motions]
-    warps = evenly_moving(moving, align(moving, options.band, options.warp_smoothing))
+    warps = align(moving, options.band, options.warp_smoothing)
+    if options.even_parameter:
+        warps = evenly_moving(moving, warps)
 
     progress("fitting")
     knots = knots_every(options.step)
@@ -153,7 +118,7 @@ def build_surface(
     *,
     tangents: np.ndarray,
     moving_time_s: float,
-    options: LearningOptions = LearningOptions(),
+    options: LearningOptions = MEASURED,
     raw: list[np.ndarray] | None = None,
     widening: np.ndarray | float = 0.0,
 ) -> CanalSurface:
@@ -180,25 +145,26 @@ def build_surface(
     mean = orient.mean_orientation(quaternions)
     spread = orient.orientation_spread(quaternions, mean)
 
-    normals = relax_normals(centres, tangents, radii)
+    disks = relax_normals if options.relax_disks else _upright
+    normals = disks(centres, tangents, radii)
     held: dict[int, np.ndarray] = {}
     while options.support_planes:
         more = hold_at_planes(centres, tangents, normals, radii, options.support_planes)
         if set(more) <= set(held):
             break
         held.update({s: m for s, m in more.items() if s not in held})
-        normals = relax_normals(centres, tangents, radii, held)
+        normals = disks(centres, tangents, radii, held)
 
     x_global = np.asarray(options.x_global, dtype=float)
     x_global = x_global / np.linalg.norm(x_global)
     x_axes, y_axes = correction_frames(
         centres,
         normals,
-        radii,
+        radii if options.cap_x_turn else np.zeros_like(radii),
         x_global,
         start=_tool_axis_across(mean[0], normals[0]),
         y_window=options.y_window,
-        max_turn=MAX_X_TURN,
+        max_turn=MAX_X_TURN if options.cap_x_turn else math.inf,
     )
     ellipses = None
     warnings = _warnings(centres, tangents, normals, radii, options.support_planes)
@@ -229,7 +195,18 @@ def build_surface(
         support_planes=options.support_planes,
         x_global=x_global,
         warnings=warnings,
+        options=options,
     )
+
+
+def _upright(
+    points: np.ndarray, tangents: np.ndarray, radii: np.ndarray, held: dict[int, np.ndarray] | None = None
+) -> np.ndarray:
+    """Disks orthogonal to the path as in the paper, but those that are held at a plane. Shape (N, 3)."""
+    normals = tangents.copy()
+    for s, normal in (held or {}).items():
+        normals[s] = normal if normal @ tangents[s] >= 0 else -normal
+    return continuous_directions(normals)
 
 
 def _containing(centres: np.ndarray, radii: np.ndarray, points: np.ndarray) -> np.ndarray:
@@ -258,6 +235,9 @@ def _tool_axis_across(quaternion: np.ndarray, normal: np.ndarray) -> np.ndarray:
 
 def _warnings(centres, tangents, normals, radii, planes) -> tuple[str, ...]:
     lines = []
+    length = float(np.sum(np.linalg.norm(np.diff(centres, axis=0), axis=1)))
+    if length < SHORT_M:
+        lines.append(f"the canal is {1e3 * length:.0f} mm long: demonstrations must be given in metres")
     last = len(centres) - 1
     bad = np.flatnonzero(crossings(centres, normals, radii) >= 1.0)
     if bad.size:

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import ArrayLike
 from scipy.spatial.transform import Rotation, Slerp
 
-from canal.editing import rebuild
+from canal.editing import beyond_data, own_options, rebuild
 from canal.errors import InputError
 from canal.quality import angles, canal_quality, curvature
 from canal.refinement import SupportPlane
@@ -102,8 +102,8 @@ def retarget(
         positions,
         quaternions,
         moving_time_s=canal.moving_time_s * length / canal.length,
-        source=np.arange(canal.n_disks, dtype=float),
-        support_planes=support_planes,
+        beyond=beyond_data(canal, np.arange(canal.n_disks)),
+        options=replace(own_options(canal), support_planes=support_planes) if support_planes is not None else None,
     )
     old_weights = np.interp(
         np.linspace(0, 1, bent.n_disks), np.linspace(0, 1, canal.n_disks), canal.orientation_weights

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from canal.demonstration import Demonstration
+from canal.learning_options import MEASURED, LearningOptions
 from canal.refinement import SupportPlane
 from canal.surface_file import read_canal_fields, save_canal
 
@@ -39,6 +40,7 @@ class CanalSurface:
         support_planes: where points are clipped.
         x_global: x_G that the correction frames follow. Shape (3,).
         warnings: what a person should know about this canal, one line each.
+        options: how it was learned; what makes another canal of it uses them.
     """
 
     directrix: np.ndarray
@@ -57,6 +59,7 @@ class CanalSurface:
     support_planes: tuple[SupportPlane, ...] = ()
     x_global: np.ndarray = None  # type: ignore[assignment]
     warnings: tuple[str, ...] = ()
+    options: LearningOptions = MEASURED
 
     def __post_init__(self):
         if self.x_global is None:

@@ -9,6 +9,7 @@ import numpy as np
 
 from canal.errors import InputError
 from canal.files import write_npz
+from canal.learning_options import MEASURED, LearningOptions, from_json, to_json
 from canal.reading import as_numbers, read_npz
 from canal.refinement import SupportPlane
 from canal.trimming import continuous_signs
@@ -47,6 +48,7 @@ def save_canal(canal: CanalSurface, path: str | os.PathLike) -> None:
     arrays["x_global"] = canal.x_global
     arrays["support_planes"] = np.array([(*p.normal, p.offset) for p in canal.support_planes]).reshape(-1, 4)
     arrays["warnings"] = np.array(canal.warnings, dtype=np.str_)
+    arrays["options"] = np.array(to_json(canal.options))
     if canal.ellipses is not None:
         arrays["ellipses"] = canal.ellipses
     write_npz(path, **arrays)
@@ -58,12 +60,12 @@ def read_canal_fields(path: str | os.PathLike) -> dict:
     Raises:
         InputError: it is not a canal file, with what is missing or wrong.
     """
-    scalars = ("moving_time_s", "format_version")
-    arrays = read_npz(path, "a canal (.npz)", (*SHAPES, *OPTIONAL_SHAPES, *scalars, "warnings"))
+    scalars, texts = ("moving_time_s", "format_version"), ("warnings", "options")
+    arrays = read_npz(path, "a canal (.npz)", (*SHAPES, *OPTIONAL_SHAPES, *scalars, *texts))
     missing = [key for key in (*SHAPES, "moving_time_s") if key not in arrays]
     if missing:
         raise InputError(f"{path}: is no canal file, it lacks {', '.join(missing)}; make one with learn -o")
-    warnings = arrays.pop("warnings", np.empty(0, dtype=np.str_))
+    warnings, learned = (arrays.pop(key, np.empty(0, dtype=np.str_)) for key in texts)
     numbers = {key: as_numbers(array, f"{path}: {key}") for key, array in arrays.items()}
     for key in scalars:
         if key in numbers and (numbers[key].shape != () or not numbers[key] > 0 or np.isinf(numbers[key])):
@@ -82,8 +84,17 @@ def read_canal_fields(path: str | os.PathLike) -> dict:
         "ellipses": numbers.get("ellipses"),
         "support_planes": tuple(SupportPlane((a, b, c), d) for a, b, c, d in planes),
         "x_global": numbers.get("x_global"),
-        "warnings": tuple(str(line) for line in np.atleast_1d(warnings)),
+        "warnings": tuple(str(line) for line in warnings.ravel()),
+        "options": _options(path, learned),
     }
+
+
+def _options(path, learned: np.ndarray) -> LearningOptions:
+    """The options in a file; the defaults in one that has none, made elsewhere or before files had them."""
+    try:
+        return from_json(str(learned[()])) if learned.size == 1 else MEASURED
+    except InputError as error:
+        raise InputError(f"{path}: {error}") from None
 
 
 def _check_shapes(path, numbers: dict[str, np.ndarray]) -> None:

@@ -41,7 +41,7 @@ class Motion:
     name: str
 
 
-def trim(demonstration: Demonstration, n_points: int) -> Motion:
+def trim(demonstration: Demonstration, n_points: int, soft: bool = True) -> Motion:
     """Leave out, softly, what does not move, and resample uniformly in what does.
 
     With v the speed (rotation counted as λ times its rate), dℓ = v w dt, w = (v/v₀)² / (1 + (v/v₀)²). A
@@ -50,6 +50,7 @@ def trim(demonstration: Demonstration, n_points: int) -> Motion:
     Args:
         demonstration: as recorded.
         n_points: M, how many points to return.
+        soft: False keeps everything, as recorded, and resamples uniformly in time.
 
     Raises:
         InputError: it does not move, or jumps.
@@ -70,7 +71,8 @@ def trim(demonstration: Demonstration, n_points: int) -> Motion:
     position = _at(clock, recorded, demonstration.position)
     turned = _at(clock, recorded, continuous_signs(demonstration.orientation))
     moving = moving_time(np.hstack([position, 2.0 * ROTATION_LENGTH_M * turned]), dt)
-    position, turned = _smooth(position, sigma), _smooth(turned, sigma)
+    if soft:
+        position, turned = _smooth(position, sigma), _smooth(turned, sigma)
     orientation = continuous_signs(turned / np.linalg.norm(turned, axis=1, keepdims=True))
     step = _steps(position, orientation)
     usual = np.sum(step**2) / np.sum(step)
@@ -84,6 +86,8 @@ def trim(demonstration: Demonstration, n_points: int) -> Motion:
     # The least slope keeps ℓ invertible where nothing moves at all.
     length += np.arange(n) * (1e-9 * length[-1] / n)
     at = np.interp(np.linspace(0.0, length[-1], n_points), length, np.arange(n, dtype=float))
+    if not soft:
+        at = np.linspace(0.0, n - 1.0, n_points)
     turned = _at(at, np.arange(n, dtype=float), orientation)
     return Motion(
         position=_at(at, np.arange(n, dtype=float), position),

@@ -9,7 +9,7 @@ from pydrake.common.yaml import yaml_load
 from yaml import YAMLError
 
 from canal.errors import InputError
-from canal.learning import LearningOptions
+from canal.learning_options import LearningOptions
 from canal.navigation import NavigationOptions
 from canal.options import Angle, Coordinate, Position, Positive, Vector2, options, read_options
 from canal.refinement import SupportPlane

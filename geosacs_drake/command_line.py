@@ -27,8 +27,16 @@ class ExitStatus(IntEnum):
     standard error says what, and how to mend it."""
 
 
-def parse_options[T](options_type: type[T], prog: str, arguments: Sequence[str] | None = None) -> T:
+def parse_options[T](
+    options_type: type[T], prog: str, arguments: Sequence[str] | None = None, default: T | None = None
+) -> T:
     """Read the command line into a dataclass.
+
+    Args:
+        options_type: the dataclass.
+        prog: the command's name, for messages.
+        arguments: instead of the process's own.
+        default: what options are that are not given; None for the dataclass's own defaults.
 
     Raises:
         InputError: an option that is unknown or has a value that it cannot take.
@@ -36,7 +44,9 @@ def parse_options[T](options_type: type[T], prog: str, arguments: Sequence[str] 
     caught = io.StringIO()
     try:
         with contextlib.redirect_stderr(caught):
-            return tyro.cli(options_type, prog=prog, args=arguments)
+            return tyro.cli(
+                options_type, prog=prog, args=arguments, **({} if default is None else {"default": default})
+            )
     except SystemExit as error:
         if not error.code:
             raise

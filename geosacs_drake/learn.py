@@ -2,19 +2,23 @@
 
 from __future__ import annotations
 
+import math
+import sys
 import webbrowser
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated
 
 import numpy as np
 import tyro
+from pydantic import Field
 from tqdm import tqdm
 
-from canal.demonstration import load_demonstration
+from canal.demonstration import AS_OURS, Demonstration, RecordingFormat, load_demonstration
 from canal.errors import InputError
-from canal.learning import LearningOptions, learn_canal
+from canal.learning import learn_canal
+from canal.learning_options import MEASURED, LearningOptions
+from canal.options import COMMAND_LINE, options
 from canal.quality import CanalQuality, canal_quality
 from canal.refinement import SupportPlane
 from canal.surface import CanalSurface
@@ -22,15 +26,18 @@ from geosacs_drake.command_line import ExitStatus, end, parse_options
 from geosacs_drake.outputs import Output, check_outputs, say_failures, write_each
 
 PROG = "geosacs_drake.learn"
+POINTS_UP = math.sin(math.radians(20.0))
+"""Height of the gripper's axis from which on it is said; things are gripped from above or from the side."""
 _N_STAGES = 4
 PICTURES = (".png", ".pdf", ".svg")
+_OLD_NAMES = {"--support-plane": "--support-planes"}  # singular, since it is given once for each plane
 
 
-@dataclass(frozen=True)
+@options(COMMAND_LINE, frozen=True)
 class LearnOptions:
     """Learn a canal from two or more demonstrations, in any order, and say what it is like."""
 
-    demonstrations: tyro.conf.Positional[tuple[Path, ...]]
+    demonstrations: tyro.conf.Positional[tuple[Path, ...]] = ()
     """Demonstrations (.npz or .csv), all from pick to place."""
     output: Annotated[Path | None, tyro.conf.arg(aliases=["-o"])] = None
     """Where to write the canal (.npz)."""
@@ -42,22 +49,48 @@ class LearnOptions:
     """Where to write it as a page to turn around in a browser."""
     view: bool = False
     """Show that page on localhost until Ctrl-C."""
-    port: int = 0
-    """Of the page; 0 for any that is free."""
-    margin: float = 0.0
-    """Added to every radius [m]."""
-    contain_raw: bool = False
-    """Widen radii until every recorded sample is inside."""
-    ellipse: bool = False
-    """Elliptic cross-sections, from three demonstrations on."""
-    interpolate: bool = False
-    """Splines through every h-th sample, as in the paper, instead of least squares."""
-    step: float = 0.1
-    """h, distance of the splines' knots, as a share of the whole."""
-    support_plane: Annotated[tuple[tuple[float, float, float, float], ...], tyro.conf.UseAppendAction] = ()
-    """NX NY NZ OFFSET: table, wall or door at n·p = offset [m], with the robot where n·p is larger. Repeatable."""
-    x_global: tuple[float, float, float] = (1.0, 0.0, 0.0)
-    """x_G, the direction that corrections along x follow."""
+    port: Annotated[int, Field(ge=0, le=65535)] = 0
+    """TCP port for --view; 0 picks a free one."""
+    recorded: Annotated[RecordingFormat, tyro.conf.arg(name="")] = AS_OURS
+    learning: Annotated[LearningOptions, tyro.conf.arg(name="")] = MEASURED
+
+
+_PRIMITIVES = tyro.constructors.ConstructorRegistry()
+
+
+@_PRIMITIVES.primitive_rule
+def _support_plane(info: tyro.constructors.PrimitiveTypeInfo) -> tyro.constructors.PrimitiveConstructorSpec | None:
+    """A support plane as four numbers."""
+    if info.type is not SupportPlane:
+        return None
+
+    def plane(words: list[str]) -> SupportPlane:
+        x, y, z, offset = map(float, words)
+        return SupportPlane((x, y, z), offset)
+
+    return tyro.constructors.PrimitiveConstructorSpec(
+        nargs=4,
+        metavar="NX NY NZ OFFSET",
+        instance_from_str=plane,
+        is_instance=lambda value: isinstance(value, SupportPlane),
+        str_from_instance=lambda value: [*map(str, value.normal), str(value.offset)],
+    )
+
+
+def parse(arguments: Sequence[str] | None = None) -> LearnOptions:
+    """The options of a command line; what it does not say is as the preset has it.
+
+    Raises:
+        InputError: an option that is unknown or has a value that it cannot take.
+    """
+    words = [_OLD_NAMES.get(word, word) for word in (sys.argv[1:] if arguments is None else arguments)]
+    schema: type[LearnOptions] = Annotated[LearnOptions, tyro.conf.UseAppendAction]  # type: ignore[assignment]
+    with _PRIMITIVES:
+        read = parse_options(schema, PROG, words)
+        if read.learning.preset == MEASURED.preset:
+            return read
+        preset = LearnOptions(learning=LearningOptions(preset=read.learning.preset))
+        return parse_options(schema, PROG, words, default=preset)
 
 
 def main(options: LearnOptions) -> ExitStatus:
@@ -69,24 +102,15 @@ def main(options: LearnOptions) -> ExitStatus:
     if not options.demonstrations:
         raise InputError("no demonstrations; give two or more files, .npz or .csv")
     check_outputs(outputs_of(options), options.demonstrations)
-    demonstrations = [load_demonstration(path) for path in options.demonstrations]
-    learning = LearningOptions(
-        step=options.step,
-        interpolate=options.interpolate,
-        margin=options.margin,
-        contain_raw=options.contain_raw,
-        ellipse=options.ellipse,
-        x_global=options.x_global,
-        support_planes=tuple(SupportPlane((a, b, c), d) for a, b, c, d in options.support_plane),
-    )
+    demonstrations = [load_demonstration(path, options.recorded) for path in options.demonstrations]
     with tqdm(total=_N_STAGES, desc="learning", delay=2.0, leave=False, disable=None) as bar:
 
         def progress(stage: str) -> None:
             bar.set_description(stage)
             bar.update()
 
-        canal = learn_canal(demonstrations, learning, progress)
-    said = report(canal, canal_quality(canal))
+        canal = learn_canal(demonstrations, options.learning, progress)
+    said = [*_dropped(demonstrations), *report(canal, canal_quality(canal))]
     recorded = [d.position for d in demonstrations]
     failures = write_each(_writers(canal, recorded, options, said))
     print("\n".join(said), flush=True)
@@ -94,6 +118,15 @@ def main(options: LearnOptions) -> ExitStatus:
     if options.view:
         _view(_page(canal, recorded), options.port)
     return ExitStatus.BAD_INPUT if failures else ExitStatus.DONE
+
+
+def _dropped(demonstrations: Sequence[Demonstration]) -> list[str]:
+    """How many samples were left out of which recording."""
+    return [
+        f"{d.name}: {d.dropped} of {len(d) + d.dropped} samples could not be used and were dropped"
+        for d in demonstrations
+        if d.dropped
+    ]
 
 
 def outputs_of(options: LearnOptions) -> list[Output]:
@@ -117,6 +150,23 @@ def outputs_of(options: LearnOptions) -> list[Output]:
 def _beside(options: LearnOptions) -> Path | None:
     """What the picture of the reach lies beside."""
     return options.plot or (options.output and options.output.with_suffix(".png"))
+
+
+def orientation_hint(canal: CanalSurface) -> list[str]:
+    """A line where the gripper points up on the mean: read in the wrong order, quaternions turn its axis just so.
+
+    The tool's x axis points out of the gripper; its height is 2 (xz - wy), and what x, y, z, w comes to if it is read
+    as w, x, y, z is the negative of that.
+    """
+    w, x, y, z = canal.orientations.T
+    height = float(np.mean(2.0 * (x * z - w * y)))
+    if height < POINTS_UP:
+        return []
+    angle = math.degrees(math.asin(min(1.0, height)))
+    return [
+        f"the gripper points {angle:.0f}° up on the mean: if the quaternions are x, y, z, w, say so with "
+        "--quaternion-order xyzw (and leave it out if they are w, x, y, z)"
+    ]
 
 
 def report(canal: CanalSurface, quality: CanalQuality) -> list[str]:
@@ -144,7 +194,8 @@ def report(canal: CanalSurface, quality: CanalQuality) -> list[str]:
         a, b, _ = canal.ellipses.T
         area = float(np.mean(a * b) / np.mean(canal.radii**2))
         rows.append(("ellipses", f"{100 * area:.0f} % of the circles' area"))
-    return [f"{name:16}{text}" for name, text in rows] + [f"warning: {line}" for line in canal.warnings]
+    warnings = [f"warning: {line}" for line in (*canal.warnings, *orientation_hint(canal))]
+    return [f"{name:16}{text}" for name, text in rows] + warnings
 
 
 def _writers(
@@ -223,4 +274,4 @@ def _view(page: str, port: int) -> None:
 
 
 if __name__ == "__main__":
-    end(lambda: main(parse_options(LearnOptions, PROG)), PROG)
+    end(lambda: main(parse()), PROG)

@@ -6,7 +6,8 @@ import numpy as np
 from hard_demonstrations import hard_demonstrations
 
 from canal.demonstration import Demonstration
-from canal.learning import LearningOptions, learn_canal
+from canal.learning import learn_canal
+from canal.learning_options import LearningOptions
 from canal.surface import CanalSurface
 
 

@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 from canals import exact
 
-from canal.learning import LearningOptions, build_surface, learn_canal
+from canal.learning import build_surface, learn_canal
+from canal.learning_options import LearningOptions
 from canal.quality import curvature
 
 BIG, SMALL = 0.4, 0.06

@@ -6,7 +6,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from canal.ellipses import disk_ellipses
-from canal.learning import LearningOptions, learn_canal
+from canal.learning import learn_canal
+from canal.learning_options import LearningOptions
 from canal.quality import canal_quality, step_ratio
 
 

@@ -12,7 +12,8 @@ from scipy.spatial.transform import Rotation
 
 from canal.demonstration import Demonstration
 from canal.errors import InputError
-from canal.learning import LearningOptions, disk_count, learn_canal, unit_tangents
+from canal.learning import disk_count, learn_canal, unit_tangents
+from canal.learning_options import LearningOptions
 from canal.quality import canal_quality, deviations, undershoot
 from canal.refinement import SupportPlane, dips
 from canal.relaxation import ROOM

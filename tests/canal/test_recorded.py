@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 from canal.demonstration import load_demonstration
-from canal.learning import LearningOptions, learn_canal
+from canal.learning import learn_canal
+from canal.learning_options import LearningOptions
 from canal.quality import canal_quality, deviations, undershoot
 from canal.refinement import SupportPlane, dips
 from canal.relaxation import ROOM

@@ -5,7 +5,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from canal.errors import InputError
-from canal.learning import LearningOptions
+from canal.learning_options import LearningOptions
 from canal.refinement import SupportPlane
 from canal.surface import CanalSurface
 

@@ -4,7 +4,8 @@ import numpy as np
 from ik_arm import pose_of
 
 from canal.demonstration import Demonstration
-from canal.learning import LearningOptions, learn_canal
+from canal.learning import learn_canal
+from canal.learning_options import LearningOptions
 from canal.surface import CanalSurface
 from diagrams.ik_solver import IkSolver
 

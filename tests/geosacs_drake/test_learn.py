@@ -11,6 +11,8 @@ import pytest
 
 import models
 from canal.demonstration import load_demonstration
+from canal.learning_options import LearningOptions
+from canal.refinement import SupportPlane
 from canal.surface import CanalSurface
 from geosacs_drake.canal_html import serve
 from geosacs_drake.learn import LearnOptions, main
@@ -91,8 +93,7 @@ def test_planes_and_ellipses_are_options(tmp_path, capsys):
     options = LearnOptions(
         tuple(map(tmp_path.__class__, DEMONSTRATIONS)),
         output=output,
-        ellipse=True,
-        support_plane=((0.0, 0.0, 1.0, low),),
+        learning=LearningOptions(ellipse=True, support_planes=(SupportPlane((0.0, 0.0, 1.0), low),)),
     )
     assert main(options) == 0
     assert "warning: 2 demonstrations say nothing about ellipses" in capsys.readouterr().out
