@@ -44,9 +44,8 @@ def parse_options[T](
     caught = io.StringIO()
     try:
         with contextlib.redirect_stderr(caught):
-            return tyro.cli(
-                options_type, prog=prog, args=arguments, **({} if default is None else {"default": default})
-            )
+            given = tyro.MISSING_NONPROP if default is None else default
+            return tyro.cli(options_type, prog=prog, args=arguments, default=given)
     except SystemExit as error:
         if not error.code:
             raise
