@@ -3,94 +3,26 @@
 from __future__ import annotations
 
 import math
-import sys
 import webbrowser
 from collections.abc import Callable, Sequence
 from pathlib import Path
-from typing import Annotated
 
 import numpy as np
-import tyro
-from pydantic import Field
 from tqdm import tqdm
 
-from canal.demonstration import AS_OURS, Demonstration, RecordingFormat, load_demonstration
+from canal.demonstration import Demonstration, load_demonstration
 from canal.errors import InputError
 from canal.learning import learn_canal
-from canal.learning_options import MEASURED, LearningOptions
-from canal.options import COMMAND_LINE, options
 from canal.quality import CanalQuality, canal_quality
-from canal.refinement import SupportPlane
 from canal.surface import CanalSurface
-from geosacs_drake.command_line import ExitStatus, end, parse_options
+from geosacs_drake.command_line import ExitStatus, end
+from geosacs_drake.learn_options import PROG, LearnOptions, parse
 from geosacs_drake.outputs import Output, check_outputs, say_failures, write_each
 
-PROG = "geosacs_drake.learn"
 POINTS_UP = math.sin(math.radians(20.0))
 """Height of the gripper's axis from which on it is said; things are gripped from above or from the side."""
 _N_STAGES = 4
 PICTURES = (".png", ".pdf", ".svg")
-_OLD_NAMES = {"--support-plane": "--support-planes"}  # singular, since it is given once for each plane
-
-
-@options(COMMAND_LINE, frozen=True)
-class LearnOptions:
-    """Learn a canal from two or more demonstrations, in any order, and say what it is like."""
-
-    demonstrations: tyro.conf.Positional[tuple[Path, ...]] = ()
-    """Demonstrations (.npz or .csv), all from pick to place."""
-    output: Annotated[Path | None, tyro.conf.arg(aliases=["-o"])] = None
-    """Where to write the canal (.npz)."""
-    plot: Path | None = None
-    """Where to draw it (.png, .pdf, .svg); Bishop and correction frames go to NAME-frames beside it."""
-    reach: bool = False
-    """Say what of it the Lio reaches, and draw that to NAME-reach beside --plot or --output."""
-    html: Path | None = None
-    """Where to write it as a page to turn around in a browser."""
-    view: bool = False
-    """Show that page on localhost until Ctrl-C."""
-    port: Annotated[int, Field(ge=0, le=65535)] = 0
-    """TCP port for --view; 0 picks a free one."""
-    recorded: Annotated[RecordingFormat, tyro.conf.arg(name="")] = AS_OURS
-    learning: Annotated[LearningOptions, tyro.conf.arg(name="")] = MEASURED
-
-
-_PRIMITIVES = tyro.constructors.ConstructorRegistry()
-
-
-@_PRIMITIVES.primitive_rule
-def _support_plane(info: tyro.constructors.PrimitiveTypeInfo) -> tyro.constructors.PrimitiveConstructorSpec | None:
-    """A support plane as four numbers."""
-    if info.type is not SupportPlane:
-        return None
-
-    def plane(words: list[str]) -> SupportPlane:
-        x, y, z, offset = map(float, words)
-        return SupportPlane((x, y, z), offset)
-
-    return tyro.constructors.PrimitiveConstructorSpec(
-        nargs=4,
-        metavar="NX NY NZ OFFSET",
-        instance_from_str=plane,
-        is_instance=lambda value: isinstance(value, SupportPlane),
-        str_from_instance=lambda value: [*map(str, value.normal), str(value.offset)],
-    )
-
-
-def parse(arguments: Sequence[str] | None = None) -> LearnOptions:
-    """The options of a command line; what it does not say is as the preset has it.
-
-    Raises:
-        InputError: an option that is unknown or has a value that it cannot take.
-    """
-    words = [_OLD_NAMES.get(word, word) for word in (sys.argv[1:] if arguments is None else arguments)]
-    schema: type[LearnOptions] = Annotated[LearnOptions, tyro.conf.UseAppendAction]  # type: ignore[assignment]
-    with _PRIMITIVES:
-        read = parse_options(schema, PROG, words)
-        if read.learning.preset == MEASURED.preset:
-            return read
-        preset = LearnOptions(learning=LearningOptions(preset=read.learning.preset))
-        return parse_options(schema, PROG, words, default=preset)
 
 
 def main(options: LearnOptions) -> ExitStatus:
@@ -131,18 +63,19 @@ def _dropped(demonstrations: Sequence[Demonstration]) -> list[str]:
 
 def outputs_of(options: LearnOptions) -> list[Output]:
     """The files that it will write, those beside the named ones included."""
-    from geosacs_drake.plotting import frames_path
-    from geosacs_drake.reach_plot import reach_path
-
     outputs = []
     if options.output is not None:
         outputs.append(Output("-o", options.output, (".npz",)))
     if options.html is not None:
         outputs.append(Output("--html", options.html, (".html", ".htm")))
     if options.plot is not None:
+        from geosacs_drake.plotting import frames_path
+
         outputs.append(Output("--plot", options.plot, PICTURES))
         outputs.append(Output("--plot", frames_path(options.plot), PICTURES))
     if options.reach and (beside := _beside(options)) is not None:
+        from geosacs_drake.reach_plot import reach_path
+
         outputs.append(Output("--reach", reach_path(beside), PICTURES))
     return outputs
 

@@ -1,7 +1,14 @@
 import numpy as np
 import pytest
 
-from canal.demonstration import Demonstration, load_demonstration, save_demonstration
+from canal.demonstration import (
+    METRES,
+    SECONDS,
+    Demonstration,
+    RecordingFormat,
+    load_demonstration,
+    save_demonstration,
+)
 from canal.errors import InputError
 
 POSITION = np.column_stack([np.linspace(0, 0.5, 6), np.zeros(6), np.full(6, 0.4)])
@@ -57,6 +64,12 @@ BAD_ARRAYS = {
     "time backwards": (_with(time=np.arange(6)[::-1] * 0.1), "does not increase"),
     "millimetres": (_with(position=POSITION * 1000), "metres"),
     "text": (_with(position=np.full((6, 3), "x")), "numbers"),
+    "centimetres": (_with(position=POSITION * 100), "--units cm"),
+    "one zero quaternion": (_with(orientation=np.where(np.arange(6)[:, None] == 4, 0.0, ORIENTATION)), "sample 4"),
+    "times too close": (_with(time=np.array([0, 5e-312, 1, 2, 3, 4])), "at least 1e-05"),
+    "complex": (_with(position=POSITION + 0j), "complex128"),
+    "a number for a time": (_with(time=3.0), "shape"),
+    "no samples": (_with(position=np.zeros((0, 3)), orientation=np.zeros((0, 4)), time=np.zeros(0)), "at least 4"),
 }
 
 
@@ -88,6 +101,67 @@ def test_bad_files_give_one_line(tmp_path, content, says):
         path.write_bytes(content)
     with pytest.raises(InputError, match=says):
         load_demonstration(path)
+
+
+@pytest.mark.parametrize("units", METRES)
+def test_lengths_in_other_units(tmp_path, units):
+    np.savez(tmp_path / "d.npz", position=POSITION / METRES[units], orientation=ORIENTATION)
+    d = load_demonstration(tmp_path / "d.npz", RecordingFormat(units=units))
+    assert np.allclose(d.position, POSITION, rtol=1e-15, atol=1e-15)
+
+
+@pytest.mark.parametrize("unit", SECONDS)
+def test_times_in_other_units(tmp_path, unit):
+    start = 1.79e9 if unit != "s" else 0.0  # as clocks count, from 1970 on
+    np.savez(
+        tmp_path / "d.npz", position=POSITION, orientation=ORIENTATION, time=(start + np.arange(6) / 20) / SECONDS[unit]
+    )
+    d = load_demonstration(tmp_path / "d.npz", RecordingFormat(time_unit=unit))
+    assert np.allclose(d.time - d.time[0], np.arange(6) / 20, atol=1e-6)
+
+
+def test_quaternions_in_the_other_order(tmp_path):
+    orientation = np.tile([0.1, 0.2, 0.3, 0.4], (6, 1))
+    np.savez(tmp_path / "d.npz", position=POSITION, orientation=np.roll(orientation, -1, axis=1))
+    d = load_demonstration(tmp_path / "d.npz", RecordingFormat(quaternion_order="xyzw"))
+    assert np.allclose(d.orientation, orientation / np.linalg.norm(orientation[0]))
+    rows = np.column_stack([np.arange(6) / 20, POSITION, np.roll(orientation, -1, axis=1)])
+    header = "t,x,y,z,qx,qy,qz,qw"  # a table names its columns
+    np.savetxt(tmp_path / "d.csv", rows, delimiter=",", header=header, comments="")
+    assert np.allclose(load_demonstration(tmp_path / "d.csv").orientation, d.orientation)
+
+
+def test_bad_samples_are_dropped_and_counted_when_told(tmp_path):
+    n = 40
+    position = np.column_stack([np.linspace(0, 0.5, n), np.zeros(n), np.full(n, 0.4)])
+    orientation, time = np.tile([1.0, 0, 0, 0], (n, 1)), np.arange(n) / 20
+    position[3, 1], position[9] = np.nan, np.inf
+    orientation[7], orientation[8] = 0, 1e-3
+    time[20], time[30] = time[19], -1.0
+    good = np.setdiff1d(np.arange(n), [3, 7, 8, 9, 20, 30])
+    np.savez(tmp_path / "d.npz", position=position, orientation=orientation, time=time)
+    with pytest.raises(InputError, match="--drop-bad-samples"):
+        load_demonstration(tmp_path / "d.npz")
+    d = load_demonstration(tmp_path / "d.npz", RecordingFormat(drop_bad_samples=True))
+    assert d.dropped == 6
+    assert np.array_equal(d.position, position[good])
+    assert np.array_equal(d.time, time[good])
+    np.savez(tmp_path / "untimed.npz", position=position, orientation=orientation)
+    d = load_demonstration(tmp_path / "untimed.npz", RecordingFormat(drop_bad_samples=True))
+    assert d.dropped == 4
+    assert d.time[3] == pytest.approx(4 / 20)  # the time goes on while nothing is known
+
+
+def test_a_table_names_the_line(tmp_path):
+    rows = "\n".join(f"{k / 20},{k / 10},0,0.4,1,0,0,{'nan' if k == 3 else 0}" for k in range(6))
+    (tmp_path / "d.csv").write_text(f"t,x,y,z,qw,qx,qy,qz\n\n{rows}\n")
+    with pytest.raises(InputError, match=r"sample 3 \(line 6\)"):
+        load_demonstration(tmp_path / "d.csv")
+
+
+def test_options_of_reading_are_checked():
+    with pytest.raises(InputError, match=r"units is 'miles'; give one of m, cm"):
+        RecordingFormat(units="miles")
 
 
 def test_a_pickle_is_never_unpickled(tmp_path):

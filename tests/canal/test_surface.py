@@ -98,15 +98,67 @@ def test_a_file_with_the_documented_keys_alone_is_a_canal(tmp_path):
         ({"x_axes": "NaN"}, "x_axes is not finite"),
         ({"format_version": 99}, "format 99"),
         ({"directrix": np.zeros((4, 3))}, "odd"),
+        ({"directrix": np.array(3.0)}, "directrix has shape"),
+        ({"demonstrations": np.zeros((0, 5, 3))}, "demonstrations has none"),
+        ({"format_version": np.nan}, "format_version must be"),
+        ({"format_version": np.zeros(2)}, "format_version must be"),
+        ({"moving_time_s": np.inf}, "moving_time_s must be"),
+        ({"moving_time_s": -1.0}, "moving_time_s must be"),
+        ({"support_planes": np.zeros((1, 2))}, "support_planes has shape"),
+        ({"support_planes": np.zeros((1, 4))}, "normal"),
+        ({"x_global": np.zeros(3)}, "x_global is zero"),
+        ({"x_axes": "doubled"}, "x_axes is not of unit length at disk 0"),
+        ({"orientations": "zero"}, "orientations is not of unit length"),
+        ({"demonstration_orientations": "zero"}, "demonstration_orientations is not of unit length"),
+        ({"normals": "x_axes"}, "normals and x_axes are not at right angles"),
+        ({"radii": "negative"}, "radii is -0"),
+        ({"orientation_weights": "infinite"}, "orientation_weights is not finite"),
+        ({"orientation_weights": "negative"}, "orientation_weights is -"),
+        ({"orientation_weights": "huge"}, "must lie in"),
+        ({"orientation_sd": "huge"}, "must lie in"),
+        ({"directrix": "huge"}, "give metres"),
+        ({"directrix": "zero"}, "mm long"),
+        ({"radii": np.full(9, "wide")}, "give numbers"),
     ],
 )
 def test_a_file_that_is_no_canal_gives_one_line(tmp_path, change, says):
     canal = hard_canal()
     arrays = {name: getattr(canal, name) for name in DOCUMENTED} | {"moving_time_s": 3.0} | change
-    arrays = {key: np.full(canal.x_axes.shape, np.nan) if isinstance(v, str) else v for key, v in arrays.items()}
+    spoil = {
+        "NaN": lambda a: a * np.nan,
+        "zero": lambda a: a * 0,
+        "doubled": lambda a: a * 2,
+        "negative": lambda a: -a - 0.01,
+        "huge": lambda a: a * 1e9 + 1e7,
+        "infinite": lambda a: a + np.inf,
+        "x_axes": lambda a: canal.x_axes,
+    }
+    for key, value in change.items():
+        if isinstance(value, str):
+            arrays[key] = spoil[value](getattr(canal, key))
     np.savez(tmp_path / "c.npz", **{key: value for key, value in arrays.items() if value is not None})
     with pytest.raises(InputError, match=says):
         CanalSurface.load(tmp_path / "c.npz")
+
+
+def test_quaternions_of_any_sign_are_read_continuously(tmp_path):
+    canal = hard_canal()
+    arrays = {name: getattr(canal, name) for name in DOCUMENTED} | {"moving_time_s": 3.0}
+    signs = np.where(np.arange(canal.n_disks) % 3 == 0, -1.0, 1.0)[:, None]
+    for key in ("orientations", "demonstration_orientations"):
+        arrays[key] = arrays[key] * signs
+    np.savez(tmp_path / "c.npz", **arrays)
+    back = CanalSurface.load(tmp_path / "c.npz")
+    assert np.sum(back.orientations[1:] * back.orientations[:-1], axis=1).min() > 0
+    for s in (10.5, 30.5):
+        assert abs(back.orientation(s) @ canal.orientation(s)) == pytest.approx(1.0, abs=1e-12)
+
+
+def test_single_floats_are_precise_enough(tmp_path):
+    canal = hard_canal()
+    arrays = {name: getattr(canal, name).astype(np.float32) for name in DOCUMENTED}
+    np.savez(tmp_path / "c.npz", **arrays, moving_time_s=np.float32(3.0))
+    assert np.allclose(CanalSurface.load(tmp_path / "c.npz").directrix, canal.directrix, atol=1e-6)
 
 
 def test_a_radius_of_zero_divides_nothing():

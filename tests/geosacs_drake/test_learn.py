@@ -1,5 +1,6 @@
 """The learn command as a person runs it."""
 
+import dataclasses
 import os
 import signal
 import subprocess
@@ -11,11 +12,13 @@ import pytest
 
 import models
 from canal.demonstration import load_demonstration
+from canal.learning import learn_canal
 from canal.learning_options import LearningOptions
 from canal.refinement import SupportPlane
 from canal.surface import CanalSurface
 from geosacs_drake.canal_html import serve
-from geosacs_drake.learn import LearnOptions, main
+from geosacs_drake.learn import main
+from geosacs_drake.learn_options import LearnOptions, parse
 
 DEMONSTRATIONS = tuple(f"{models.__path__[0]}/demonstrations/relocation_{k}.npz" for k in (1, 2))
 
@@ -73,6 +76,11 @@ def _bad_files(folder):
         (["-o", "nowhere/c.npz"], "no folder"),
         (["--plot", "c.doc"], ".png"),
         (["--support-plane", "0", "0", "1", "5"], "support plane"),
+        (["--n-disks", "200"], "odd"),
+        (["--alpha", "nan"], "alpha"),
+        (["--preset", "best"], "preset"),
+        (["--units", "miles"], "units"),
+        (["--port", "-1"], "--port"),
     ],
 )
 def test_bad_input_gives_one_line_and_status_2(tmp_path, arguments, says):
@@ -100,6 +108,77 @@ def test_planes_and_ellipses_are_options(tmp_path, capsys):
     canal = CanalSurface.load(output)
     assert canal.support_planes[0].offset == low
     assert min(canal.point(s, 1.0, phi)[2] for s in (0, canal.n_disks - 1) for phi in range(7)) >= low - 1e-9
+
+
+def test_every_option_of_learning_can_be_typed():
+    """With another value than its default, as a person would write it; none is written twice."""
+    typed = {
+        "step": "0.125",
+        "band": "0.2",
+        "warp_smoothing": "0.02",
+        "margin": "0.01",
+        "n_disks": "151",
+        "x_global": "0 1 0",
+        "y_window": "10",
+        "support_planes": "0 0 1 -0.5",
+        "alpha": "5",
+        "beta": "0.2",
+        "preset": "paper",
+    }
+    for field in dataclasses.fields(LearningOptions):
+        default = getattr(LearningOptions(), field.name)
+        flag = f"--{field.name.replace('_', '-')}"
+        if isinstance(default, bool):
+            words = [flag.replace("--", "--no-") if default else flag]
+        else:
+            words = [flag, *typed[field.name].split()]
+        assert getattr(parse(words).learning, field.name) != default, field.name
+    planes = parse(["a", "b", "--support-plane", *["0", "0", "1", "0.1"], "--support-plane", *["0", "1", "0", "-1"]])
+    assert [plane.offset for plane in planes.learning.support_planes] == [0.1, -1]
+    assert len(planes.demonstrations) == 2
+
+
+def test_a_preset_on_the_command_line_gives_way_to_what_is_typed():
+    learning = parse(["--preset", "paper", "--y-window", "3", "--relax-disks"]).learning
+    assert learning == LearningOptions(preset="paper", y_window=3, relax_disks=True)
+    assert learning.interpolate
+
+
+def test_units_order_and_bad_samples_of_a_recording(tmp_path):
+    for k, path in enumerate(DEMONSTRATIONS):
+        d = load_demonstration(path)
+        position = 100 * d.position
+        position[50 + k] = np.nan
+        orientation = np.roll(d.orientation, -1, axis=1)
+        np.savez(tmp_path / f"{k}.npz", position=position, orientation=orientation, time=1e3 * d.time)
+    files = ["0.npz", "1.npz"]
+    for words, says in (
+        ([], "--drop-bad-samples"),
+        (["--drop-bad-samples"], "4 samples"),
+        (["--drop-bad-samples", "--units", "cm"], "--time-unit ms"),
+    ):
+        done = learn(*files, *words, cwd=tmp_path)
+        assert done.returncode == 2
+        assert says in done.stderr
+        assert len(done.stderr.splitlines()) == 1
+    words = ["--drop-bad-samples", "--units", "cm", "--time-unit", "ms"]
+    done = learn(*files, *words, cwd=tmp_path)
+    assert done.returncode == 0, done.stderr
+    assert "--quaternion-order xyzw" in done.stdout
+    done = learn(*files, *words, "--quaternion-order", "xyzw", "-o", "c.npz", cwd=tmp_path)
+    assert done.returncode == 0, done.stderr
+    assert "--quaternion-order" not in done.stdout
+    assert "0.npz: 1 of" in done.stdout
+    plain = learn_canal([load_demonstration(path) for path in DEMONSTRATIONS])
+    canal = CanalSurface.load(tmp_path / "c.npz")
+    assert canal.n_disks == plain.n_disks
+    assert np.abs(canal.directrix - plain.directrix).max() < 1e-3
+    assert np.abs(np.sum(canal.orientations * plain.orientations, axis=1)).min() > 0.9999
+
+
+def test_a_canal_that_is_far_too_short_is_said(tmp_path):
+    done = learn(*DEMONSTRATIONS, "--units", "cm", cwd=tmp_path)
+    assert "metres" in done.stdout
 
 
 def test_view_shows_the_page_on_localhost_until_interrupted():
