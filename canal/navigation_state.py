@@ -7,6 +7,25 @@ from operator import attrgetter
 import numpy as np
 
 
+class Ignored(IntEnum):
+    """Why a press did nothing."""
+
+    NOTHING = 0
+    """No press has been ignored yet."""
+    STOPPED = 1
+    """Nothing moves until start."""
+    ALREADY_STOPPED = 2
+    """Stop, while nothing moves anyhow."""
+    STOP_HELD = 3
+    """Start, while stop is held."""
+    WAITING = 4
+    """Start, at pick or place: a grip, a release or a reversal goes on."""
+    PRESSING = 5
+    """Start, while the robot presses on something."""
+    POINT = 6
+    """The stick, where the canal is as narrow as a point."""
+
+
 class Leg(IntEnum):
     """The four legs of the cycle, in order (paper V-E)."""
 
@@ -62,6 +81,8 @@ class NavigationState:
     """1 while the stick moves the point on the disk."""
     waiting: float = 0.0
     """1 while standing at pick or place for the operator."""
+    paused: float = 0.0
+    """1 while start holds the robot on its disk, until start is pressed again."""
     held_gripper: float = 0.0
     """Level of the gripper button at the last step (for its edge); likewise the next three."""
     held_reverse: float = 0.0
@@ -70,10 +91,26 @@ class NavigationState:
     """See `held_gripper`."""
     held_stop: float = 0.0
     """See `held_gripper`."""
-    held_alarm: float = 0.0
-    """Level of the alarm at the last step."""
+    held_stick: float = 0.0
+    """1 while the stick was off centre at the last step."""
+    alarm: float = 0.0
+    """1 while a contact force is above its limit."""
+    press_x: float = 0.0
+    """The direction that presses while it is, a unit vector in the robot's base frame; zero where none is known."""
+    press_y: float = 0.0
+    """See `press_x`."""
+    press_z: float = 0.0
+    """See `press_x`."""
+    press_way: float = 0.0
+    """The way along the canal that pressed when the force rose: +1, -1, or 0 where it was not the travel."""
+    travelled: float = 0.0
+    """The way that was travelled last: +1 towards place, -1 towards pick, 0 before the first travel."""
     blocked: float = 0.0
-    """1 after an alarm, until the person reverses or starts anew."""
+    """1 while a motion that is wanted is held back, or cut, because it presses."""
+    ignored: float = 0.0
+    """Presses so far that did nothing."""
+    ignored_why: float = 0.0
+    """The reason of the last of them, an `Ignored`."""
     corrections: float = 0.0
     """Corrections so far: times that the stick left its centre."""
     backtracks: float = 0.0

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import os
 from dataclasses import dataclass, fields, replace
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -13,6 +14,9 @@ from canal.demonstration import Demonstration
 from canal.learning_options import MEASURED, LearningOptions
 from canal.refinement import SupportPlane
 from canal.surface_file import read_canal_fields, save_canal
+
+MIN_RADIUS = 1e-9
+"""[m] Below this a disk is a point: there is nothing to correct, and the ratio is carried through it."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -120,6 +124,19 @@ class CanalSurface:
         frame = self._frame(disk)
         return np.array(frame[4:7]), np.array(frame[7:10])
 
+    def widest_homewards(self, disk: float) -> float:
+        """The largest radius over the spacing of disks, r/|Δc|, between a continuous disk and home.
+
+        So many disks of travel are as long as the largest radius there.
+        """
+        return self._widest[self._at(disk)[0]]
+
+    @cached_property
+    def _widest(self) -> list[float]:
+        wide = np.maximum(self.radii[:-1], self.radii[1:]) / np.maximum(np.diff(self.arc), 1e-9)
+        pick, place = wide[: self.home_disk], wide[self.home_disk :]
+        return [*np.maximum.accumulate(pick[::-1])[::-1].tolist(), *np.maximum.accumulate(place).tolist()]
+
     def extent(self, disk: float, phi: float) -> float:
         """Distance from the centre to the rim in the direction φ [rad], [m]: r, or the ellipse's. Planes not seen."""
         ellipses = self._ellipses  # type: ignore[attr-defined]
@@ -180,7 +197,7 @@ class CanalSurface:
         phi = math.atan2(v, u)
         if self._ellipses is not None:  # type: ignore[attr-defined]
             r = self.extent(disk, phi)
-        if r < 1e-9:
+        if r < MIN_RADIUS:
             return 0.0, 0.0
         return math.hypot(u, v) / r, phi
 

@@ -33,10 +33,12 @@ class RecordedJoystick(LeafSystem):
 
     ```
     RecordedJoystick → joystick (6)
+                     → person_in_charge (1)
     ```
 
-    Each 20 Hz sample takes what the recording held in the middle of it, so that the log of a run, written at the
-    control rate before or after the sample's update, gives back that run bit for bit.
+    Each 20 Hz sample takes what the recording held in the middle of it, so that the samples of a log, or rows written
+    at 40 Hz or more before or after the sample's update, give back that run bit for bit. `person_in_charge` is 1 where
+    a person held the joystick when it was recorded.
     """
 
     def __init__(self, recording: JoystickRecording, period: float = JOYSTICK_PERIOD) -> None:
@@ -45,6 +47,7 @@ class RecordedJoystick(LeafSystem):
         self._recording = recording
         self._period = period
         self.DeclareStateOutputPort("joystick", self.DeclareDiscreteState(JOYSTICK_SIZE))
+        self.DeclareStateOutputPort("person_in_charge", self.DeclareDiscreteState([recording.person_at(0.0)]))
         self.DeclarePeriodicDiscreteUpdateEvent(period, 0.0, self._sample)
 
     @staticmethod
@@ -55,20 +58,23 @@ class RecordedJoystick(LeafSystem):
         return builder.AddNamedSystem(name, RecordedJoystick(recording))
 
     def _sample(self, context: Context, discrete: DiscreteValues) -> None:
-        discrete.set_value(0, self._recording.at(context.get_time() + self._period / 2))
+        middle = context.get_time() + self._period / 2
+        discrete.set_value(0, self._recording.at(middle))
+        discrete.set_value(1, [self._recording.person_at(middle)])
 
 
 class JoystickSelector(LeafSystem):
     """Lets a person take over from the simulated operator, once and for all, by touching the joystick.
 
     ```
-       person (6) →                  → joystick (6)
-    simulated (6) → JoystickSelector → person_in_charge (1)
+                      person (6) → ┌──────────────────┐
+                   simulated (6) → │ JoystickSelector │ → joystick (6)
+    simulated_person_in_charge (1)→└──────────────────┘ → person_in_charge (1)
     ```
 
     Until the person's stick leaves its centre or a button is pressed, `joystick` is `simulated`; from then on it is
-    `person`. `person_in_charge` is 1 from then on. An unconnected `person` never takes over; an unconnected
-    `simulated` rests.
+    `person`. `person_in_charge` is 1 from then on, and before it what `simulated_person_in_charge` says of a recording
+    (0 if that is unconnected). An unconnected `person` never takes over; an unconnected `simulated` rests.
     """
 
     def __init__(self, period: float = JOYSTICK_PERIOD) -> None:
@@ -76,6 +82,7 @@ class JoystickSelector(LeafSystem):
         super().__init__()
         self._person = self.DeclareVectorInputPort("person", JOYSTICK_SIZE)
         self._simulated = self.DeclareVectorInputPort("simulated", JOYSTICK_SIZE)
+        self._recorded = self.DeclareVectorInputPort("simulated_person_in_charge", 1)
         self._latch = self.DeclareDiscreteState(1)
         prerequisites = {
             self.discrete_state_ticket(self._latch),
@@ -87,7 +94,7 @@ class JoystickSelector(LeafSystem):
             "person_in_charge",
             1,
             self._calc_in_charge,
-            {self.discrete_state_ticket(self._latch), self._person.ticket()},
+            {self.discrete_state_ticket(self._latch), self._person.ticket(), self._recorded.ticket()},
         )
         self.DeclarePeriodicDiscreteUpdateEvent(period, 0.0, self._update)
 
@@ -97,11 +104,16 @@ class JoystickSelector(LeafSystem):
         builder: DiagramBuilder,
         person: OutputPort | None = None,
         simulated: OutputPort | None = None,
+        simulated_person_in_charge: OutputPort | None = None,
         name: str = "joystick_selector",
     ) -> JoystickSelector:
         """Add a selector to `builder`, connected to the sources that there are."""
         selector = builder.AddNamedSystem(name, JoystickSelector())
-        for source, port in ((person, "person"), (simulated, "simulated")):
+        for source, port in (
+            (person, "person"),
+            (simulated, "simulated"),
+            (simulated_person_in_charge, "simulated_person_in_charge"),
+        ):
             if source is not None:
                 builder.Connect(source, selector.GetInputPort(port))
         return selector
@@ -128,4 +140,5 @@ class JoystickSelector(LeafSystem):
             output.set_value(np.zeros(JOYSTICK_SIZE))
 
     def _calc_in_charge(self, context: Context, output: BasicVector) -> None:
-        output.SetAtIndex(0, float(self._in_charge(context)))
+        recorded = self._recorded.HasValue(context) and self._recorded.Eval(context).item(0) > 0.5
+        output.SetAtIndex(0, float(recorded or self._in_charge(context)))

@@ -7,6 +7,8 @@ import math
 import numpy as np
 from pydrake.systems.framework import BasicVector, Context, DiscreteValues, LeafSystem
 
+from canal.joystick import in_step
+
 ARM = 6
 OPEN_ANGLE = 0.5236
 """Angle of the open gripper [rad] (SPEC section 6)."""
@@ -14,7 +16,8 @@ CLOSE_TARGET = -0.1
 """Where the closed gripper aims [rad]: past closed, so that the drive's effort limit makes the grip, not its spring."""
 GRIPPER_SPEED = 1.047
 """[rad/s] (SPEC section 6)."""
-PERIOD = 0.02
+PERIOD = in_step(1 / 60)
+"""[s] Of the gripper's ramp."""
 CLEAR_OF_STOPS = 1e-4
 """The drives aim no nearer to a joint's stop than this [rad]. Drake computes a stop as a nearly rigid constraint once
 the joint is nearer to it than it moves in two steps; at rest, with velocities of 1e-9 to 1e-14 rad/s and nothing else

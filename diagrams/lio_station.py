@@ -10,6 +10,7 @@ from pydrake.multibody.tree import ModelInstanceIndex, PdControllerGains
 from pydrake.systems.framework import Context, Diagram, DiagramBuilder
 
 from canal.errors import InputError
+from canal.joystick import in_step
 from diagrams.contact_sensor import ContactSensor
 from diagrams.goals import Goal
 from diagrams.item_sensor import ItemSensor
@@ -17,7 +18,6 @@ from diagrams.layout import make_goals
 from diagrams.lio_drive import ARM, LioDrive
 from diagrams.lio_sensors import LioSensor
 from diagrams.overlaps import check_overlaps
-from diagrams.resting_arm import Standing
 from diagrams.scenario import Contact, Scenario
 from diagrams.scene import Scene, add_scene
 from diagrams.soft_contact import prepare_for_cloth
@@ -42,8 +42,9 @@ class LioStation(Diagram):
 
     ```
      desired_state (12: q, v) → ┌────────────┐ → q (6), v (6), gripper_state (2: angle, rate), X_BT (7)
-                                │ LioStation │ → item_poses (7 n), item_bounds (6 n), item_speeds (n)
-       gripper_command (1)    → └────────────┘ → contact_forces (pairs) [N], penetration (1) [m]
+                                │            │ → item_poses (7 n), item_bounds (6 n), item_speeds (n)
+                                │ LioStation │ → contact_forces (pairs) [N], touching_bodies (pairs)
+       gripper_command (1)    → └────────────┘ → hand_force (3) [N], penetration (1) [m]
     ```
 
     The gripper closes at a command of 1, opens at 0. Items are in the scenario's order, in W; `contact_pairs` names
@@ -79,16 +80,13 @@ class LioStation(Diagram):
         drive = builder.AddNamedSystem("lio_drive", LioDrive(checked_posture(q0, stops), stops))
         plant.SetDefaultPositions(lio, drive.start_positions())
 
-        standing = builder.AddNamedSystem("standing", Standing(drive.GetOutputPort("actuator_state").size()))
-        self.standing: Standing = standing
         sensor = builder.AddNamedSystem("lio_sensor", LioSensor(plant, lio, self.scene.X_WB))
         items = builder.AddNamedSystem("item_sensor", ItemSensor(self.scene))
         touch = builder.AddNamedSystem("contact_sensor", ContactSensor(plant, scene_graph, self.scene))
         self.contact_pairs: list[str] = touch.contact_pairs
+        self.robot_bodies: list[str] = touch.robot_bodies
 
-        builder.Connect(drive.GetOutputPort("actuator_state"), standing.GetInputPort("actuator_state"))
-        builder.Connect(plant.get_contact_results_output_port(), standing.GetInputPort("contact_results"))
-        builder.Connect(standing.GetOutputPort("actuator_state"), plant.get_desired_state_input_port(lio))
+        builder.Connect(drive.GetOutputPort("actuator_state"), plant.get_desired_state_input_port(lio))
         builder.Connect(plant.get_state_output_port(lio), sensor.GetInputPort("lio_state"))
         poses, query = plant.get_body_poses_output_port(), scene_graph.get_query_output_port()
         builder.Connect(poses, sensor.GetInputPort("body_poses"))
@@ -96,7 +94,7 @@ class LioStation(Diagram):
         builder.Connect(plant.get_body_spatial_velocities_output_port(), items.GetInputPort("body_velocities"))
         builder.Connect(query, items.GetInputPort("geometry_query"))
         builder.Connect(query, touch.GetInputPort("geometry_query"))
-        builder.Connect(standing.GetOutputPort("contact_results"), touch.GetInputPort("contact_results"))
+        builder.Connect(plant.get_contact_results_output_port(), touch.GetInputPort("contact_results"))
         for name in ("desired_state", "gripper_command"):
             builder.ExportInput(drive.GetInputPort(name), name)
         for system in (sensor, items, touch):
@@ -133,7 +131,7 @@ class LioStation(Diagram):
 def plant_config(contact: Contact) -> MultibodyPlantConfig:
     """How Drake is to compute contact; the approximation is given (`Contact.for_items`)."""
     return MultibodyPlantConfig(
-        time_step=contact.time_step,
+        time_step=in_step(contact.time_step),
         discrete_contact_approximation=contact.approximation,
         contact_model=contact.model,
         contact_surface_representation="polygon",

@@ -30,13 +30,14 @@ KEYS = (
     Key("↓ stick against green y [down arrow]", "ArrowDown", K_Y, -1.0),
     Key("Gripper: open or close [G]", "KeyG", GRIPPER),
     Key("Reverse: back along the canal [R]", "KeyR", REVERSE),
-    Key("Start, go on [Enter]", "Enter", START),
-    Key("Stop here [Space]", "Space", STOP),
+    Key("Start; pause, go on [Enter]", "Enter", START),
+    Key("Stop: freeze until Start [Space]", "Space", STOP),
 )
 """Keys and buttons of the panel; the first four are the stick."""
 
 SLIDERS = ("hold x (red)", "hold y (green)")
 """The stick on the screen, which stays where it is put; a label of the panel has room for some 16 letters."""
+SLIDER_STEP = 0.05
 
 CENTRE = ("Centre: both sliders to 0 [C]", "KeyC")
 """Puts the sliders back to 0."""
@@ -48,6 +49,7 @@ CONTROLS = """\
   stick    left stick of a gamepad, or arrow keys: x along the red arrow, y along the green one
   gripper  A (lower button), or G        reverse  B (right button), or R
   start    start, or Enter               stop     back, or Space
+While it travels, start pauses it on its disk, and again goes on; stop freezes everything until start.
 The same as buttons and sliders under "Open Controls". Click into the picture first: keys go where the mouse clicked."""
 """The controls, for a terminal."""
 
@@ -101,7 +103,8 @@ class MeshcatJoystick(LeafSystem):
 
         Args:
             meshcat: the page.
-            dead_zone: length of a gamepad's stick below which it rests, in [0, 1); worn sticks rest at up to 0.1.
+            dead_zone: length of a gamepad's stick below which it rests, in [0, 1); worn sticks rest at up to 0.1. There
+                is no other one: whatever this system puts out corrects.
             nudge_s: how long the press of an arrow key lasts [s].
             hold_s: how long the press of a button lasts [s]; above the delay of a keyboard's repeat (0.25 to 0.66 s).
             period: of the samples [s].
@@ -114,7 +117,7 @@ class MeshcatJoystick(LeafSystem):
             meshcat.AddButton(key.label, key.code)
         for slider in SLIDERS:
             meshcat.DeleteSlider(slider, strict=False)
-            meshcat.AddSlider(slider, -1.0, 1.0, 0.05, 0.0)
+            meshcat.AddSlider(slider, -1.0, 1.0, SLIDER_STEP, 0.0)
         meshcat.AddButton(*CENTRE)
         self._joystick = self.DeclareDiscreteState(JOYSTICK_SIZE)
         self._counts = self.DeclareDiscreteState(len(KEYS) + 1)
@@ -142,7 +145,7 @@ class MeshcatJoystick(LeafSystem):
     def _sample(self, context: Context, discrete: DiscreteValues) -> None:
         joystick = self._read_keys(context, discrete) + self._read_pad(context, discrete)
         for place, slider in enumerate(SLIDERS):
-            joystick[place] += self._meshcat.GetSliderValue(slider)
+            joystick[place] += round(self._meshcat.GetSliderValue(slider) / SLIDER_STEP) * SLIDER_STEP  # exact zeros
         if self._meshcat.GetNumActiveConnections() == 0:
             joystick[:] = 0.0
         discrete.set_value(self._joystick, clean_joystick(joystick))

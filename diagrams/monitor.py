@@ -6,6 +6,7 @@ import numpy as np
 from pydrake.math import RigidTransform
 from pydrake.systems.framework import Context, DiagramBuilder, DiscreteValues, EventStatus, LeafSystem
 
+from canal.joystick import JOYSTICK_PERIOD
 from canal.navigation import FIELD_NAMES, NavigationState, phase
 from canal.options import NotNegative, Positive, Share, options
 from canal.surface import CanalSurface
@@ -32,7 +33,7 @@ class Monitor(LeafSystem):
 
     ```
             item_poses (7 n) → ┌─────────┐
-           item_bounds (6 n) → │         │ → alarm (1)
+           item_bounds (6 n) → │         │
              item_speeds (n) → │ Monitor │ → placed_times (n), negative: not placed
                     X_BT (7) → │         │ → peak_forces (pairs) [N]
            navigation_state  → │         │ → measures (2): measured correction distance [m], peak penetration [m]
@@ -41,7 +42,8 @@ class Monitor(LeafSystem):
        person_in_charge (1)  → └─────────┘
     ```
 
-    `person_in_charge` is optional: a person's stop is a pause, the simulated operator's ends the run.
+    `person_in_charge` is optional: a person's stop, live or recorded, is a pause; the simulated operator's ends the
+    run.
     """
 
     def __init__(
@@ -71,13 +73,11 @@ class Monitor(LeafSystem):
         self._placed_times = self.DeclareDiscreteState(np.full(n, -1.0))
         self._peaks = self.DeclareDiscreteState(contact_pairs)
         self._measures = self.DeclareDiscreteState(2)
-        self._alarm = self.DeclareDiscreteState(1)
         # Started, correcting and the TCP at the last look [m].
         self._last = self.DeclareDiscreteState(5)
         self.DeclareStateOutputPort("placed_times", self._placed_times)
         self.DeclareStateOutputPort("peak_forces", self._peaks)
         self.DeclareStateOutputPort("measures", self._measures)
-        self.DeclareStateOutputPort("alarm", self._alarm)
         self.DeclarePeriodicDiscreteUpdateEvent(period, 0.0, self._watch)
         # Where things lie changes slowly, and is dear to compute: judged as often as a person looks.
         self.DeclarePeriodicDiscreteUpdateEvent(JUDGING_PERIOD, JUDGING_PERIOD, self._judge)
@@ -99,10 +99,8 @@ class Monitor(LeafSystem):
             distance += math.dist(p_BT, last)
         now = self._penetration.Eval(context).item(0)
         penetration = now if now > penetration else penetration
-        alarm = max(forces.tolist(), default=0.0) > self._options.force_limit_n
         discrete.set_value(self._peaks, peaks)
         discrete.set_value(self._measures, np.array((distance, penetration)))
-        discrete.set_value(self._alarm, np.array((float(alarm),)))
         discrete.set_value(self._last, np.array((float(started or running), correcting, *p_BT)))
 
     def _judge(self, context: Context, discrete: DiscreteValues) -> EventStatus:
@@ -134,5 +132,5 @@ class Monitor(LeafSystem):
 
 CORRECTING, RUNNING = FIELD_NAMES.index("correcting"), FIELD_NAMES.index("running")
 """Places in the navigation state: of 21 numbers these two are all that is needed at the control rate."""
-JUDGING_PERIOD = 0.05
+JUDGING_PERIOD = JOYSTICK_PERIOD
 """[s] The things are judged 20 times a second."""

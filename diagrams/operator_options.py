@@ -14,7 +14,7 @@ Seconds = Annotated[float, Field(ge=0, le=60)]
 def _whole_samples(delay_s: float) -> float:
     samples = delay_s / JOYSTICK_PERIOD
     if abs(samples - round(samples)) > 1e-9:
-        raise InputError(f"give a multiple of {JOYSTICK_PERIOD} s")
+        raise InputError(f"give a multiple of {JOYSTICK_PERIOD:g} s")
     return delay_s
 
 

@@ -8,7 +8,7 @@ import numpy as np
 from pydrake.systems.framework import Context, DiagramBuilder, OutputPort
 from pydrake.systems.primitives import LogVectorOutput, VectorLogSink
 
-from canal.joystick import GRIPPER
+from canal.joystick import GRIPPER, JOYSTICK_PERIOD
 from canal.navigation import FIELD_NAMES, Leg
 from diagrams.ik_system import IkStatusField
 
@@ -16,17 +16,41 @@ from diagrams.ik_system import IkStatusField
 class RunLog:
     """Log sinks for the signals of a run, and what they come to."""
 
-    def __init__(self, builder: DiagramBuilder, signals: Mapping[str, OutputPort], period: float) -> None:
-        """Log each of `signals` every `period` seconds."""
+    def __init__(
+        self,
+        builder: DiagramBuilder,
+        signals: Mapping[str, OutputPort],
+        period: float,
+        samples: Mapping[str, OutputPort] | None = None,
+    ) -> None:
+        """Log each of `signals` every `period` seconds, and what is sampled with the joystick at each of its samples.
+
+        Args:
+            builder: where the signals are.
+            signals: by name; one of them is kept as `joystick`, for example.
+            period: of the log [s].
+            samples: by name, kept for a replay: a control rate that is no multiple of 20 Hz misses some of them.
+        """
         self._sinks: dict[str, VectorLogSink] = {
             name: LogVectorOutput(port, builder, period) for name, port in signals.items()
         }
+        self._samples: dict[str, VectorLogSink] = {
+            name: LogVectorOutput(port, builder, JOYSTICK_PERIOD) for name, port in (samples or {}).items()
+        }
 
     def signals(self, root: Context) -> dict[str, np.ndarray]:
-        """`time` (T,) and each signal (T, ...), raw."""
+        """`time` (T,) and each signal (T, ...), raw; `sample_time` (K,) and the samples (K, ...) from then on."""
         logs = {name: sink.FindLog(root) for name, sink in self._sinks.items()}
         first = next(iter(logs.values()))
-        return {"time": first.sample_times().copy()} | {name: log.data().T.copy() for name, log in logs.items()}
+        found = {"time": first.sample_times().copy()} | {name: log.data().T.copy() for name, log in logs.items()}
+        for name, sink in self._samples.items():
+            log = sink.FindLog(root)
+            last = sink.get_input_port().Eval(sink.GetMyContextFromRoot(root))
+            # At a sample's time the log has what held until then. The last row only tells when it ends.
+            values = np.vstack([log.data().T[1:], last, 0 * last])
+            found[name] = values
+            found["sample_time"] = np.append(log.sample_times(), log.sample_times()[-1] + JOYSTICK_PERIOD)
+        return found
 
 
 def named_signals(raw: Mapping[str, np.ndarray]) -> dict[str, np.ndarray]:
@@ -57,6 +81,12 @@ def named_signals(raw: Mapping[str, np.ndarray]) -> dict[str, np.ndarray]:
         "item_poses": raw["item_poses"],
         "contact_forces": raw["contact_forces"],
     }
+    if "sample_time" in raw:
+        named |= {
+            "joystick_time": raw["sample_time"],
+            "joystick": raw["joystick_samples"],
+            "joystick_in_charge": raw["in_charge_samples"][:, 0],
+        }
     times, kinds = events(raw)
     return named | {"event_times": times, "events": kinds}
 
@@ -73,11 +103,14 @@ def events(raw: Mapping[str, np.ndarray]) -> tuple[np.ndarray, np.ndarray]:
                 found.append((float(time[k]), names[float(values[k])]))
 
     add("running", {1.0: "start", 0.0: "stop"})
+    add("paused", {1.0: "pause", 0.0: "pause ends"})
     add("gripper_closed", {1.0: "close", 0.0: "open"})
     add("correcting", {1.0: "correction", 0.0: "correction ends"})
-    add("blocked", {1.0: "force limit", 0.0: "freed"})
+    add("alarm", {1.0: "force limit", 0.0: "freed"})
     add("leg", {float(leg): f"leg {leg.name.lower()}" for leg in Leg})
     backtracks = navigation[:, FIELD_NAMES.index("backtracks")]
     found += [(float(time[k]), "reverse") for k in np.flatnonzero(np.diff(backtracks) > 0) + 1]
+    ignored = navigation[:, FIELD_NAMES.index("ignored")]
+    found += [(float(time[k]), "press ignored") for k in np.flatnonzero(np.diff(ignored) > 0) + 1]
     found.sort()
     return np.array([t for t, _ in found]), np.array([name for _, name in found], dtype=np.str_)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Literal
@@ -10,16 +11,19 @@ from pydrake.geometry import Meshcat, MeshcatVisualizer, MeshcatVisualizerParams
 from pydrake.systems.framework import Context, Diagram, DiagramBuilder, OutputPort
 from pydrake.systems.primitives import ZeroOrderHold
 
-from canal.joystick import JOYSTICK_PERIOD
+from canal.joystick import JOYSTICK_PERIOD, in_step
 from canal.surface import CanalSurface
+from diagrams.announcements import Announcement, Announcer
 from diagrams.cameras import VideoRecorder
 from diagrams.canal_view import CanalView
 from diagrams.clear_arm import make_lio_solver
+from diagrams.force_alarm import ForceAlarm
 from diagrams.ik_system import OrientationWeightedIk
 from diagrams.joystick import JoystickSelector, RecordedJoystick
 from diagrams.joystick_recording import JoystickRecording
 from diagrams.lio_station import START_POSTURE, LioStation
 from diagrams.meshcat_joystick import MeshcatJoystick
+from diagrams.meshcat_notice import MeshcatNotice
 from diagrams.monitor import Monitor
 from diagrams.navigator import CanalNavigator
 from diagrams.operator import SimulatedOperator
@@ -61,6 +65,7 @@ def build_shared_autonomy(
     meshcat: Meshcat | None = None,
     recording: Meshcat | None = None,
     video: Path | None = None,
+    say: Callable[[Announcement], None] | None = None,
 ) -> SharedAutonomy:
     """Wire a scenario and a canal into a diagram.
 
@@ -78,11 +83,12 @@ def build_shared_autonomy(
         meshcat: where to show it; None for no pictures.
         recording: a Meshcat of its own that records it; None for no recording.
         video: film the room and the gripper's view for this file; saved by `SharedAutonomy.video`.
+        say: is told what a person is to be told: what presses, what is stopped, which press did nothing.
 
     Raises:
         InputError: the scenario's things overlap, or the arm cannot reach the canal's home.
     """
-    period = 1.0 / scenario.control_rate_hz
+    period = in_step(1.0 / scenario.control_rate_hz)
     builder = DiagramBuilder()
 
     solver = make_lio_solver(scenario)
@@ -99,6 +105,12 @@ def build_shared_autonomy(
         contact_pairs=len(station.contact_pairs),
         X_WB=station.X_WB,
         options=scenario.monitor,
+        period=period,
+    )
+    alarm = ForceAlarm.AddToBuilder(
+        builder=builder,
+        contact_pairs=len(station.contact_pairs),
+        limit_n=scenario.monitor.force_limit_n,
         period=period,
     )
 
@@ -136,11 +148,16 @@ def build_shared_autonomy(
         builder=builder,
         person=None if person is None else person.GetOutputPort("joystick"),
         simulated=None if source is None else source.GetOutputPort("joystick"),
+        simulated_person_in_charge=(
+            source.GetOutputPort("person_in_charge") if isinstance(source, RecordedJoystick) else None
+        ),
     )
 
     builder.Connect(selector.GetOutputPort("joystick"), navigator.GetInputPort("joystick"))
     builder.Connect(measured["gripper_state"], navigator.GetInputPort("gripper_state"))
-    builder.Connect(monitor.GetOutputPort("alarm"), navigator.GetInputPort("alarm"))
+    for name in ("contact_forces", "hand_force"):
+        builder.Connect(measured[name], alarm.GetInputPort(name))
+    builder.Connect(alarm.GetOutputPort("alarm"), navigator.GetInputPort("alarm"))
     builder.Connect(navigator.GetOutputPort("X_BT_desired"), ik.GetInputPort("X_BT_desired"))
     builder.Connect(navigator.GetOutputPort("orientation_weight"), ik.GetInputPort("orientation_weight"))
     builder.Connect(ik.GetOutputPort("desired_state"), station.GetInputPort("desired_state"))
@@ -152,6 +169,19 @@ def build_shared_autonomy(
     builder.Connect(selector.GetOutputPort("person_in_charge"), monitor.GetInputPort("person_in_charge"))
 
     canvases = [(canvas, name) for canvas, name in ((meshcat, "view"), (recording, "recording")) if canvas is not None]
+    if say is not None or canvases:
+        announcer = Announcer.AddToBuilder(
+            builder=builder,
+            canal=canal,
+            contact_pairs=station.contact_pairs,
+            robot_bodies=station.robot_bodies,
+            limit_n=scenario.monitor.force_limit_n,
+            say=say,
+            show=[MeshcatNotice(canvas, station.X_WB).show for canvas, _ in canvases],
+        )
+        builder.Connect(navigator.GetOutputPort("navigation_state"), announcer.GetInputPort("navigation_state"))
+        for name in ("contact_forces", "touching_bodies"):
+            builder.Connect(measured[name], announcer.GetInputPort(name))
     if canvases:
         colors = reach_report(solver, canal, start, rings=2, spokes=6, most_disks=61).colors()
     for canvas, name in canvases:
@@ -179,6 +209,10 @@ def build_shared_autonomy(
         }
         | {name: measured[name] for name in ("q", "X_BT", "gripper_state", "contact_forces", "item_poses")},
         period,
+        samples={
+            "joystick_samples": selector.GetOutputPort("joystick"),
+            "in_charge_samples": selector.GetOutputPort("person_in_charge"),
+        },
     )
     recorder = None if video is None else VideoRecorder.AddToBuilder(builder=builder, station=station, path=video)
     diagram = builder.Build()
@@ -198,7 +232,7 @@ def _show(builder: DiagramBuilder, station: LioStation, meshcat: Meshcat, name: 
         builder.Connect(query, view.GetInputPort("query_object"))
 
 
-MEASURED = ("q", "X_BT", "gripper_state", "contact_forces", "penetration")
+MEASURED = ("q", "X_BT", "gripper_state", "contact_forces", "hand_force", "touching_bodies", "penetration")
 """Ports of the station that are sampled at the control rate."""
 THINGS = ("item_poses", "item_bounds", "item_speeds")
 """Ports of the station that are looked at 20 times a second."""

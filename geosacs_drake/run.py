@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Sequence
+from contextlib import suppress
 from typing import NoReturn
 
 from pydrake.geometry import Meshcat
 from tqdm import tqdm
 
 from canal.surface import CanalSurface
+from diagrams.announcements import Announcement
 from diagrams.joystick_recording import load_recording
 from diagrams.layout import base_pose
 from diagrams.meshcat_joystick import CONTROLS
@@ -82,6 +84,7 @@ def _run(
         meshcat=page,
         recording=recorded,
         video=options.video,
+        say=tell,
     )
     if page is not None:
         steer = f" and steer at {page.web_url()}\n{CONTROLS}" if operator == "person" else f" at {page.web_url()}"
@@ -109,6 +112,12 @@ def operator_of(options: RunOptions):
     if options.operator in PEOPLE:
         return "person"
     return load_recording(options.operator)
+
+
+def tell(announcement: Announcement) -> None:
+    """Print what a person is to be told, above the progress bar. What cannot be printed is not worth a run."""
+    with suppress(OSError, ValueError):
+        tqdm.write(f"{announcement.time_s:.1f} s: {announcement.text}", file=sys.stderr)
 
 
 class _Bar:

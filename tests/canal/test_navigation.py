@@ -196,17 +196,6 @@ def test_reversal_keeps_disks_frames_and_mapping(canal, started):
     assert (there.eta, there.phi) == (back.eta, back.phi)
 
 
-def test_alarm_blocks_until_reversed_and_opens_nothing(canal, started):
-    state = replace(run(canal, started, REST, 2.0), gripper_closed=1.0)
-    blocked = step(canal, state, stick(1, 1), 0.01, alarm=True)
-    assert blocked.disk == state.disk
-    assert run(canal, blocked, stick(1, 1), 1.0, alarm=True).eta == state.eta
-    assert run(canal, blocked, REST, 1.0).disk == state.disk, "also when the force is gone"
-    assert blocked.gripper_closed
-    freed = run(canal, step(canal, blocked, REVERSE, 0.01, alarm=True), REST, 0.5, alarm=True)
-    assert freed.disk > state.disk
-
-
 def test_what_is_not_finite_is_a_centred_stick(canal, started):
     joystick = np.array([np.nan, np.inf, np.nan, 0, 0, np.nan])
     state = step(canal, started, joystick, 0.05)

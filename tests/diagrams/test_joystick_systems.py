@@ -7,7 +7,7 @@ from pydrake.systems.analysis import Simulator
 from pydrake.systems.framework import DiagramBuilder
 from pydrake.systems.primitives import ConstantVectorSource, LogVectorOutput
 
-from canal.joystick import JOYSTICK_PERIOD
+from canal.joystick import JOYSTICK_PERIOD, in_step
 from diagrams.joystick import JoystickSelector, RecordedJoystick, clean_joystick
 from diagrams.joystick_recording import JoystickRecording
 
@@ -19,7 +19,7 @@ def run(recording: JoystickRecording, duration: float) -> tuple[np.ndarray, np.n
     """Times and joystick vectors at 100 Hz, as a run's log has them."""
     builder = DiagramBuilder()
     source = RecordedJoystick.AddToBuilder(builder=builder, recording=recording)
-    sink = LogVectorOutput(source.GetOutputPort("joystick"), builder, 0.01)
+    sink = LogVectorOutput(source.GetOutputPort("joystick"), builder, in_step(0.01))
     simulator = Simulator(builder.Build())
     simulator.AdvanceTo(duration)
     log = sink.FindLog(simulator.get_context())
@@ -62,6 +62,25 @@ def test_the_log_of_a_run_replays_bit_for_bit():
     np.testing.assert_array_equal(second[1], first[1][:n])
 
 
+def test_a_recording_tells_who_held_the_joystick():
+    time = np.array([0.0, 1.0, 2.0])
+    source = RecordedJoystick(JoystickRecording(time, np.zeros((3, 6)), person_in_charge=np.array([0.0, 1.0, 1.0])))
+    simulator = Simulator(source)
+    for until, person in ((0.5, 0), (1.5, 1), (9.0, 1)):
+        simulator.AdvanceTo(until)
+        assert source.GetOutputPort("person_in_charge").Eval(simulator.get_context()) == person
+    stranger = RecordedJoystick(JoystickRecording(time, np.zeros((3, 6))))
+    assert stranger.GetOutputPort("person_in_charge").Eval(stranger.CreateDefaultContext()) == 1
+
+
+def test_the_selector_passes_on_who_held_a_recorded_joystick():
+    for recorded in (0.0, 1.0):
+        selector, context = selector_context(np.zeros(6), SIMULATED)
+        selector.GetInputPort("simulated_person_in_charge").FixValue(context, [recorded])
+        assert selector.GetOutputPort("person_in_charge").Eval(context) == recorded
+        np.testing.assert_array_equal(selector.GetOutputPort("joystick").Eval(context), SIMULATED)
+
+
 def selector_context(person=None, simulated=None):
     selector = JoystickSelector()
     context = selector.CreateDefaultContext()
@@ -100,8 +119,8 @@ def test_one_touch_takes_over_at_once_and_for_good():
     selector = JoystickSelector.AddToBuilder(
         builder=builder, person=person.GetOutputPort("joystick"), simulated=simulated.get_output_port()
     )
-    out = LogVectorOutput(selector.GetOutputPort("joystick"), builder, 0.01)
-    charge = LogVectorOutput(selector.GetOutputPort("person_in_charge"), builder, 0.01)
+    out = LogVectorOutput(selector.GetOutputPort("joystick"), builder, in_step(0.01))
+    charge = LogVectorOutput(selector.GetOutputPort("person_in_charge"), builder, in_step(0.01))
     simulator = Simulator(builder.Build())
     simulator.AdvanceTo(1.0)
     log = out.FindLog(simulator.get_context())
