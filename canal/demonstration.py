@@ -177,13 +177,13 @@ def load_demonstration(path: str | os.PathLike, recorded: RecordingFormat = AS_O
         time = (time - time.flat[0]) * SECONDS[recorded.time_unit]
     dropped, timed = 0, time
     if recorded.drop_bad_samples:
-        position, orientation, timed, dropped = _without_bad_samples(position, orientation, time)
+        position, orientation, timed, dropped = _without_bad_samples(position, orientation, time, name)
         lines = None
     return Demonstration(position, orientation, timed, name, dropped, lines)  # type: ignore[arg-type]
 
 
 def _without_bad_samples(
-    position: np.ndarray, orientation: np.ndarray, time: np.ndarray | None
+    position: np.ndarray, orientation: np.ndarray, time: np.ndarray | None, name: str
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray | None, int]:
     """The samples that can be used, timed, and how many were dropped; arrays of odd shapes are left to be refused."""
     n = len(position) if position.ndim == 2 else 0
@@ -193,9 +193,13 @@ def _without_bad_samples(
     norm = np.linalg.norm(orientation, axis=1)
     good = np.isfinite(position).all(axis=1) & np.isfinite(norm) & np.isfinite(clock)
     good &= (norm > SHORTEST_QUATERNION) & (norm < LONGEST_QUATERNION)
-    good &= (np.abs(position) <= LARGEST_COORDINATE_M).all(axis=1)
+    far = ~(np.abs(position) <= LARGEST_COORDINATE_M).all(axis=1)
+    if np.sum(far & good) < 0.5 * np.sum(good):  # where most are far away it is the unit that is wrong
+        good &= ~far
     before = np.concatenate([[-np.inf], np.maximum.accumulate(np.where(good, clock, -np.inf))[:-1]])
     good &= clock > before + SMALLEST_STEP_S
+    if n and good.sum() < MIN_SAMPLES:
+        raise InputError(f"{name}: {good.sum()} of {n} samples can be used; give at least {MIN_SAMPLES} good ones")
     return position[good], orientation[good], clock[good], int(n - good.sum())
 
 

@@ -152,6 +152,16 @@ def test_bad_samples_are_dropped_and_counted_when_told(tmp_path):
     assert d.time[3] == pytest.approx(4 / 20)  # the time goes on while nothing is known
 
 
+def test_dropping_samples_hides_no_mistake_that_all_have(tmp_path):
+    drop = RecordingFormat(drop_bad_samples=True)
+    np.savez(tmp_path / "d.npz", position=100 * POSITION, orientation=ORIENTATION)
+    with pytest.raises(InputError, match="--units cm"):
+        load_demonstration(tmp_path / "d.npz", drop)
+    np.savez(tmp_path / "d.npz", position=POSITION, orientation=0 * ORIENTATION)
+    with pytest.raises(InputError, match="0 of 6 samples can be used"):
+        load_demonstration(tmp_path / "d.npz", drop)
+
+
 def test_a_table_names_the_line(tmp_path):
     rows = "\n".join(f"{k / 20},{k / 10},0,0.4,1,0,0,{'nan' if k == 3 else 0}" for k in range(6))
     (tmp_path / "d.csv").write_text(f"t,x,y,z,qw,qx,qy,qz\n\n{rows}\n")
