@@ -24,7 +24,7 @@ class IkStatusField(enum.IntEnum):
     STATUS = 0
     """`diagrams.ik_options.IkStatus`."""
     SOLVE_TIME = 1
-    """Wall clock [s]: the one value that a replay does not repeat."""
+    """Wall clock [s]: the one value that a replay does not repeat; 0 where nothing had to be solved."""
     BOUND_VIOLATION = 2
     """Largest excess over this tick's bounds [rad]."""
     POSITION_ERROR = 3
@@ -66,6 +66,8 @@ class OrientationWeightedIk(LeafSystem):
         self._weight_port = self.DeclareVectorInputPort("orientation_weight", n_weights)
         command = self.DeclareDiscreteState(np.concatenate((q_start, np.zeros(n))))
         status = self.DeclareDiscreteState(len(IkStatusField))
+        # Pose and weights that the posture has been held for; not finite while it moves.
+        self._held_for = int(self.DeclareDiscreteState(np.full(7 + n_weights, np.nan)))
         self._command, self._status = int(command), int(status)
         self.DeclareStateOutputPort("desired_state", command)
         self.DeclareStateOutputPort("ik_status", status)
@@ -86,11 +88,19 @@ class OrientationWeightedIk(LeafSystem):
         q_prev = command[:n]
         target: Any = self._target_port.Eval(context)
         weight: Any = self._weight_port.Eval(context)
+        asked = [*target.tolist(), *weight.tolist()]
+        if asked == context.get_discrete_state().value(self._held_for).tolist():
+            status = context.get_discrete_state().value(self._status).copy()
+            status[IkStatusField.SOLVE_TIME] = 0.0
+            updates.set_value(self._status, status)
+            return  # the same question from the same posture at rest: the same answer
         result = self._solver.solve(target, weight, q_prev, self._period, command[n:])
         step = result.q - q_prev
         still = bool(np.abs(step).max() < AT_REST)
         moved = (q_prev, np.zeros(n)) if still else (result.q, step / self._period)
         updates.set_value(self._command, np.concatenate(moved))
+        held = still and not command[n:].any()
+        updates.set_value(self._held_for, np.array(asked) if held else np.full(len(asked), np.nan))
         updates.set_value(
             self._status,
             np.array(

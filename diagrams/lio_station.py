@@ -18,6 +18,7 @@ from diagrams.layout import make_goals
 from diagrams.lio_drive import ARM, LioDrive
 from diagrams.lio_sensors import LioSensor
 from diagrams.overlaps import check_overlaps
+from diagrams.resting_arm import Standing
 from diagrams.scenario import Contact, Scenario
 from diagrams.scene import Scene, add_scene
 from diagrams.soft_contact import prepare_for_cloth
@@ -80,13 +81,17 @@ class LioStation(Diagram):
         drive = builder.AddNamedSystem("lio_drive", LioDrive(checked_posture(q0, stops), stops))
         plant.SetDefaultPositions(lio, drive.start_positions())
 
+        standing = builder.AddNamedSystem("standing", Standing(drive.GetOutputPort("actuator_state").size()))
+        self.standing: Standing = standing
         sensor = builder.AddNamedSystem("lio_sensor", LioSensor(plant, lio, self.scene.X_WB))
         items = builder.AddNamedSystem("item_sensor", ItemSensor(self.scene))
         touch = builder.AddNamedSystem("contact_sensor", ContactSensor(plant, scene_graph, self.scene))
         self.contact_pairs: list[str] = touch.contact_pairs
         self.robot_bodies: list[str] = touch.robot_bodies
 
-        builder.Connect(drive.GetOutputPort("actuator_state"), plant.get_desired_state_input_port(lio))
+        builder.Connect(drive.GetOutputPort("actuator_state"), standing.GetInputPort("actuator_state"))
+        builder.Connect(plant.get_contact_results_output_port(), standing.GetInputPort("contact_results"))
+        builder.Connect(standing.GetOutputPort("actuator_state"), plant.get_desired_state_input_port(lio))
         builder.Connect(plant.get_state_output_port(lio), sensor.GetInputPort("lio_state"))
         poses, query = plant.get_body_poses_output_port(), scene_graph.get_query_output_port()
         builder.Connect(poses, sensor.GetInputPort("body_poses"))
@@ -94,7 +99,7 @@ class LioStation(Diagram):
         builder.Connect(plant.get_body_spatial_velocities_output_port(), items.GetInputPort("body_velocities"))
         builder.Connect(query, items.GetInputPort("geometry_query"))
         builder.Connect(query, touch.GetInputPort("geometry_query"))
-        builder.Connect(plant.get_contact_results_output_port(), touch.GetInputPort("contact_results"))
+        builder.Connect(standing.GetOutputPort("contact_results"), touch.GetInputPort("contact_results"))
         for name in ("desired_state", "gripper_command"):
             builder.ExportInput(drive.GetInputPort(name), name)
         for system in (sensor, items, touch):

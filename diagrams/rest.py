@@ -4,6 +4,7 @@ A resting piece stays where it is, is met by others as a fixed solid, and costs 
 pieces: 3.9 ms awake, 0.3 ms asleep; a sock that falls on a towel: 6.5 ms with the towel awake, 1.9 ms at rest, and it
 comes to lie within 4 mm of where it would). It wakes *before* the robot touches it, when what bears it moves, and when
 the robot presses something against it; what merely comes to lie on it, or beside it, does not wake it.
+The arm rests with all that lies in its hand and about it (`diagrams.resting_arm`); then it is furniture like any other.
 Which pieces rest is a parameter of the plant and of the scene graph in the Context; nothing is kept here.
 """
 
@@ -18,6 +19,7 @@ from pydrake.multibody.tree import ModelInstanceIndex
 from pydrake.systems.framework import Context, EventStatus
 
 from diagrams.contacts import each_contact
+from diagrams.resting_arm import RestingArm, Standing
 from diagrams.resting_piece import STILL, make_piece
 from diagrams.scene import RigidItem
 from diagrams.shape_bounds import BodyBoxes, Boxes, extent
@@ -44,13 +46,35 @@ class Rest:
         scene_graph: SceneGraph,
         robot: ModelInstanceIndex,
         items: Sequence[RigidItem | SoftItem],
+        standing: Standing | None = None,
     ) -> None:
+        """Watch these.
+
+        Args:
+            plant: finalized.
+            scene_graph: of the plant.
+            robot: what wakes pieces by coming near.
+            items: the pieces.
+            standing: in the path of the robot's command; None for a robot that never rests.
+        """
         self._plant = plant
         self._scene_graph = scene_graph
         self._pieces = [make_piece(plant, scene_graph, item) for item in items]
         inspector = scene_graph.model_inspector()
         of_pieces = {g for piece in self._pieces for g in (*piece.own, *piece.at_rest)}
         self._others = [g for g in inspector.GetAllGeometryIds(Role.kProximity) if g not in of_pieces]
+        self._arm = None if standing is None else RestingArm(plant, robot, standing)
+        links_shapes = [
+            g
+            for body in map(plant.get_body, plant.GetBodyIndices(robot))
+            if not plant.IsAnchored(body)
+            for g in plant.GetCollisionGeometriesForBody(body)
+        ]
+        # Of each shape of the robot, what it may meet: neighbours in the arm may not.
+        self._meets = {
+            g: [other for other in self._others if other != g and not inspector.CollisionFiltered(g, other)]
+            for g in links_shapes
+        }
         self._piece_of = {g: k for k, piece in enumerate(self._pieces) for g in (*piece.own, *piece.at_rest)}
         # A box for each shape: one around a bent finger would reach to what the finger passes.
         links = [
@@ -70,24 +94,39 @@ class Rest:
 
     def __call__(self, root_context: Context) -> EventStatus:
         """Look, if it is time to; `root_context` belongs to the diagram that the plant is in."""
+        called = self._arm is not None and self._arm.is_called(root_context)
         step = round(root_context.get_time() / self._plant.time_step())
-        if root_context.get_time() < SETTLING or step % max(1, round(PERIOD / self._plant.time_step())):
+        due = root_context.get_time() >= SETTLING and not step % max(1, round(PERIOD / self._plant.time_step()))
+        if not (due or called):
             return EventStatus.DidNothing()
-        self.set_awake(root_context, self.awake(self._plant.GetMyContextFromRoot(root_context)))
+        stands = self._arm is not None and self._arm.stands(root_context)
+        context = self._plant.GetMyContextFromRoot(root_context)
+        if stands and not self._is_awake(root_context).any():
+            return EventStatus.DidNothing()  # nothing has moved since the last look
+        pieces, arm = self._look(context, stands)
+        self.set_awake(root_context, pieces, arm=arm)
         return EventStatus.Succeeded()
 
-    def set_awake(self, root_context: Context, wanted: np.ndarray) -> None:
-        """Wake the pieces that `wanted` (n,) names, and put the others to rest."""
+    def _is_awake(self, root_context: Context) -> np.ndarray:
+        """Of each piece, and of the arm. Shape (n + 1,), bool."""
         context = self._plant.GetMyContextFromRoot(root_context)
-        before = [piece.is_awake(context) for piece in self._pieces]
-        if wanted.tolist() == before:
+        arm = self._arm is None or self._arm.is_awake(root_context)
+        return np.array([*(piece.is_awake(context) for piece in self._pieces), arm])
+
+    def set_awake(self, root_context: Context, wanted: np.ndarray, *, arm: bool = True) -> None:
+        """Wake the pieces that `wanted` (n,) names, and the `arm`, and put the others to rest."""
+        before = self._is_awake(root_context)
+        after = np.append(wanted, arm or self._arm is None)
+        if (before == after).all():
             return
-        for piece, was, awake in zip(self._pieces, before, wanted.tolist(), strict=True):
+        for piece, was, awake in zip(self._pieces, before.tolist(), wanted.tolist(), strict=False):
             if awake != was:
                 (piece.wake if awake else piece.rest)(root_context)
-        self._filter(root_context, wanted)
+        if self._arm is not None and before[-1] != after[-1]:
+            (self._arm.wake if arm else self._arm.rest)(root_context)
+        self._filter(root_context, wanted, arm_turns=bool(before[-1] != after[-1]), arm=arm)
 
-    def _filter(self, root_context: Context, awake: np.ndarray) -> None:
+    def _filter(self, root_context: Context, awake: np.ndarray, *, arm_turns: bool, arm: bool) -> None:
         """Let what is awake meet everything, and what rests only what is awake."""
         filters = self._scene_graph.collision_filter_manager(
             self._scene_graph.GetMyMutableContextFromRoot(root_context)
@@ -97,13 +136,21 @@ class Rest:
             shapes[stirs] += piece.own if stirs else piece.at_rest
         everything = GeometrySet([*self._others, *self._piece_of])
         declaration = CollisionFilterDeclaration()
+        if arm_turns:
+            for shape, others in self._meets.items():
+                turn = declaration.AllowBetween if arm else declaration.ExcludeBetween
+                turn(GeometrySet(shape), GeometrySet(others))
         declaration.ExcludeBetween(GeometrySet(list(self._piece_of)), everything)
         declaration.AllowBetween(GeometrySet(shapes[True]), GeometrySet([*self._others, *shapes[False]]))
         declaration.AllowWithin(GeometrySet(shapes[True]))
         filters.Apply(declaration)
 
     def awake(self, context: Context) -> np.ndarray:
-        """Which pieces are to be simulated, given the plant's context. Shape (n,), bool."""
+        """Which pieces are to be simulated, given the plant's context and an arm that moves. Shape (n,), bool."""
+        return self._look(context, stands=False)[0]
+
+    def _look(self, context: Context, stands: bool) -> tuple[np.ndarray, bool]:
+        """Which pieces are to be simulated, (n,), and whether the arm is; `stands`: whether it has nothing to do."""
         boxes = self._boxes([self._plant.EvalBodyPoseInWorld(context, body) for body in self._bodies])
         links, pieces = boxes[: len(self._links)], np.empty((len(self._pieces), 6))
         pieces[self._rigid] = boxes[len(self._links) :].bounds()
@@ -113,9 +160,11 @@ class Rest:
         touched = self._touched(context, links, pieces)
         was_awake = [piece.is_awake(context) for piece in self._pieces]
         if not any(touched) and not any(was_awake):
-            return np.zeros(len(self._pieces), dtype=bool)
+            return np.zeros(len(self._pieces), dtype=bool), not stands
         sizes = (np.linalg.norm(pieces[:, 3:] - pieces[:, :3], axis=1) / 2).tolist()
         speeds = [p.speed(context, size) for p, size in zip(self._pieces, sizes, strict=True)]
+        arm = not stands or any(near and speed > STILL for near, speed in zip(touched, speeds, strict=True))
+        touched = [near and arm for near in touched]  # a robot that rests wakes nothing
         active = [near or speed > STILL for near, speed in zip(touched, speeds, strict=True)]
         awake = np.array(active)
         gaps, neighbours = _gaps(pieces, pieces).tolist(), []
@@ -129,7 +178,7 @@ class Rest:
             force = forces.get((i, j), np.zeros(3))
             carried = speeds[j] > STILL and force[2] > CARRIED * self._pieces[i].weight
             awake[i] |= carried or (touched[j] and (was_awake[i] or np.linalg.norm(force) > PRESSED))
-        return awake
+        return awake, arm
 
     def _parts(self, context: Context, pieces: np.ndarray, k: int) -> np.ndarray:
         """Bounds of the parts of piece k: of the triangles of a soft one. Shape (m, 6)."""

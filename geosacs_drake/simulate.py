@@ -65,6 +65,7 @@ def simulate(
         scene_graph=station.scene_graph,
         robot=station.scene.lio,
         items=station.scene.items,
+        standing=station.standing,
     )
 
     def rest_and_watch(root_context: Context) -> EventStatus:

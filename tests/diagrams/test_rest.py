@@ -89,3 +89,107 @@ def test_the_robot_near_a_piece_keeps_it_awake():
     plant.SetFreeBodyPose(context, item.body, pose)
     assert rest.awake(context)[0]
     assert not rest.awake(context)[2]
+
+
+def with_arm(change=lambda scenario: None, seconds=1.5):
+    """Laundry at rest whose arm may rest, too."""
+    scenario = with_items(load_scenario("laundry"), "rigid")
+    change(scenario)
+    station = LioStation(scenario)
+    rest = Rest(
+        plant=station.plant,
+        scene_graph=station.scene_graph,
+        robot=station.scene.lio,
+        items=station.scene.items,
+        standing=station.standing,
+    )
+    simulator = Simulator(station)
+    context = simulator.get_mutable_context()
+    wanted = station.GetInputPort("desired_state").FixValue(context, np.concatenate([START_POSTURE, np.zeros(6)]))
+    gripper = station.GetInputPort("gripper_command").FixValue(context, [0.0])
+    simulator.set_monitor(rest)
+    simulator.AdvanceTo(seconds)
+    return station, rest, simulator, wanted.GetMutableData(), gripper.GetMutableData()
+
+
+def joints_locked(station, simulator) -> list[bool]:
+    context = station.plant_context(simulator.get_context())
+    joints = [station.plant.get_joint(j) for j in station.plant.GetJointIndices(station.scene.lio)]
+    return [joint.is_locked(context) for joint in joints if joint.num_velocities()]
+
+
+def measured(station, simulator, name) -> np.ndarray:
+    return station.GetOutputPort(name).Eval(simulator.get_context()).copy()
+
+
+def test_an_arm_that_stands_rests_and_moves_at_the_first_command_without_a_jump():
+    station, _, simulator, wanted, gripper = with_arm()
+    assert all(joints_locked(station, simulator))
+    assert all(locked(station, simulator))
+    before = measured(station, simulator, "q")
+    simulator.AdvanceTo(3.0)
+    np.testing.assert_array_equal(measured(station, simulator, "q"), before)
+    step = np.array([0.02, 0.0, 0.0, 0.0, 0.0, 0.0])
+    last = before
+    for tick in range(1, 26):
+        wanted.set_value(np.concatenate([START_POSTURE + tick * 0.1 * step, step / 0.2]))
+        simulator.AdvanceTo(3.0 + 0.02 * tick)
+        now = measured(station, simulator, "q")
+        assert np.abs(now - last).max() < 0.004, "no more than the command moves"
+        last = now
+    assert not any(joints_locked(station, simulator))
+    assert last[0] - before[0] > 0.04
+    wanted.set_value(np.concatenate([START_POSTURE + 2.5 * step, np.zeros(6)]))
+    simulator.AdvanceTo(5.0)
+    assert all(joints_locked(station, simulator))
+    gripper.set_value([1.0])
+    simulator.AdvanceTo(5.3)
+    assert measured(station, simulator, "gripper_state")[0] < 0.4
+    assert not any(joints_locked(station, simulator))
+
+
+def test_what_a_sleeping_arm_presses_on_is_pressed_on():
+    """Drake computes no force between what is locked: an alarm would vanish, and come back."""
+
+    def high_table(scenario):
+        scenario.things[1].position = [0.36, 0.0, 0.68]
+        scenario.things = [scenario.things[0], scenario.things[1], scenario.things[3]]
+        del scenario.items[1:]
+        scenario.items[0].start.center = [0.50, 0.25, 0.98]
+
+    station, _, simulator, wanted, _ = with_arm(high_table, 0.1)
+    down = np.array([0, 0.0, 0.35, 0, 0.25, 0])
+    for tick in range(1, 41):
+        wanted.set_value(np.concatenate([START_POSTURE + 0.02 * tick * down, down]))
+        simulator.AdvanceTo(0.1 + 0.02 * tick)
+    wanted.set_value(np.concatenate([START_POSTURE + 0.8 * down, np.zeros(6)]))
+    simulator.AdvanceTo(3.0)
+    assert all(joints_locked(station, simulator))
+    pressed = measured(station, simulator, "contact_forces")
+    assert pressed[1] > 100.0
+    simulator.AdvanceTo(4.0)
+    np.testing.assert_array_equal(measured(station, simulator, "contact_forces"), pressed)
+    q = measured(station, simulator, "q")
+    wanted.set_value(np.concatenate([START_POSTURE + 0.7999 * down, np.zeros(6)]))
+    for tick in range(1, 21):
+        simulator.AdvanceTo(4.0 + 0.004 * tick)
+        np.testing.assert_allclose(measured(station, simulator, "contact_forces"), pressed, rtol=0.03)
+    assert not any(joints_locked(station, simulator))
+    np.testing.assert_allclose(measured(station, simulator, "q"), q, atol=2e-4)
+
+
+def test_a_piece_that_moves_beside_a_sleeping_arm_wakes_it():
+    station, rest, simulator, *_ = with_arm()
+    plant = station.plant
+    root = simulator.get_mutable_context()
+    context = plant.GetMyMutableContextFromRoot(root)
+    item = station.scene.rigid_items[0]
+    pose = plant.EvalBodyPoseInWorld(context, item.body)
+    tcp = plant.EvalBodyPoseInWorld(context, plant.GetBodyByName("tcp", station.scene.lio))
+    pose.set_translation(tcp.translation() + [0, 0, 0.15])
+    rest.set_awake(root, np.array([True, False, False]), arm=False)
+    plant.SetFreeBodyPose(context, item.body, pose)
+    simulator.AdvanceTo(1.55)
+    assert joints_locked(station, simulator) == [True] * 8, "it falls, and is not there yet"
+    simulator.AdvanceTo(1.66)
+    assert joints_locked(station, simulator) == [False] * 8

@@ -6,7 +6,7 @@ from ik_arm import Q_START, TCP, lio_plant, pose_of
 from pydrake.systems.analysis import Simulator
 
 from diagrams.ik_solver import IkSolver
-from diagrams.ik_system import OrientationWeightedIk
+from diagrams.ik_system import IkStatusField, OrientationWeightedIk
 from diagrams.lio_drive import OPEN_ANGLE
 from diagrams.lio_station import START_POSTURE, LioStation
 from diagrams.scenario import load_scenario
@@ -53,3 +53,7 @@ def test_a_posture_that_is_the_best_is_held_exactly():
         context.SetDiscreteState(system.EvalUniquePeriodicDiscreteUpdate(context))
     np.testing.assert_array_equal(command.Eval(context), before)
     np.testing.assert_array_equal(before[6:], np.zeros(6))
+    assert system.GetOutputPort("ik_status").Eval(context)[IkStatusField.SOLVE_TIME] == 0.0, "nothing to solve"
+    system.GetInputPort("orientation_weight").FixValue(context, [1.0])
+    context.SetDiscreteState(system.EvalUniquePeriodicDiscreteUpdate(context))
+    assert system.GetOutputPort("ik_status").Eval(context)[IkStatusField.SOLVE_TIME] > 0.0, "another question"
