@@ -60,6 +60,7 @@ class Rest:
         self._plant = plant
         self._scene_graph = scene_graph
         self._pieces = [make_piece(plant, scene_graph, item) for item in items]
+        self._names = [*(item.name for item in items), "robot"]
         inspector = scene_graph.model_inspector()
         of_pieces = {g for piece in self._pieces for g in (*piece.own, *piece.at_rest)}
         self._others = [g for g in inspector.GetAllGeometryIds(Role.kProximity) if g not in of_pieces]
@@ -112,6 +113,10 @@ class Rest:
         context = self._plant.GetMyContextFromRoot(root_context)
         arm = self._arm is None or self._arm.is_awake(root_context)
         return np.array([*(piece.is_awake(context) for piece in self._pieces), arm])
+
+    def names_awake(self, root_context: Context) -> list[str]:
+        """What is being simulated: pieces by name, and `robot`."""
+        return [name for name, awake in zip(self._names, self._is_awake(root_context), strict=True) if awake]
 
     def set_awake(self, root_context: Context, wanted: np.ndarray, *, arm: bool = True) -> None:
         """Wake the pieces that `wanted` (n,) names, and the `arm`, and put the others to rest."""

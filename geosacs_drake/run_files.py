@@ -81,11 +81,11 @@ def finish(
     failures += write_each(writers)
     if summary:
         print(describe(summary), flush=True)
-    if result.fault:
+    if result.failure:
         kept = "; its files hold what was measured until then" if writers and not failures else ""
         print(f"{prog}: {result.reason}{kept}", file=sys.stderr)
     say_failures(prog, failures)
-    if failures or result.fault:
+    if failures or result.failure:
         return ExitStatus.BAD_INPUT
     return ExitStatus.DONE if summary["success"] else ExitStatus.NOT_DONE
 

@@ -14,6 +14,7 @@ from pydrake.systems.framework import Context, EventStatus
 from diagrams.rest import Rest
 from diagrams.shared_autonomy import SharedAutonomy
 from geosacs_drake.command_line import one_line
+from geosacs_drake.failure import describe_failure
 from geosacs_drake.summary import RunResult
 
 CHUNK_S = 0.5
@@ -55,7 +56,7 @@ def simulate(
         watch: called after each step of the plant with the diagram's context, to measure what no port tells.
 
     Returns:
-        What happened; a simulation that something inside it ends says so in `fault`, and keeps what it had.
+        What happened; a simulation that something inside it ends says so in `failure`, and keeps what it had.
     """
     simulator = Simulator(system.diagram)
     simulator.set_target_realtime_rate(rate)
@@ -77,7 +78,7 @@ def simulate(
     root = simulator.get_context()
     monitor_context = system.monitor.GetMyContextFromRoot(root)
     factors: list[float] = []
-    reason, fault = f"time is up after {duration:g} s", False
+    reason, failure = f"time is up after {duration:g} s", ""
     try:
         system.take_first_measurements(simulator.get_mutable_context())
         simulator.Initialize()
@@ -94,16 +95,10 @@ def simulate(
                 reason = status.message()
                 break
     except (Exception, SystemExit) as error:  # Drake says `SystemExit` where a condition of its own does not hold
-        reason, fault = f"{_what_failed(error)} at {root.get_time():.2f} s: {one_line(str(error))}", True
-    return _result(system, root, task, seed, item_names, reason, fault, np.array(factors))
-
-
-def _what_failed(error: BaseException) -> str:
-    if "websocket thread" in str(error):
-        return "the page failed (a client sent it what Meshcat cannot read)"
-    if isinstance(error, RuntimeError):  # of Drake's solvers: the plant's state has left what can be simulated
-        return "the simulation failed"
-    return f"the simulation failed ({type(error).__name__})"
+        reason, failure = describe_failure(error, system, rest, root), one_line(str(error)) or type(error).__name__
+    finally:
+        gc.unfreeze()  # or all that was built for this run would stay for ever
+    return _result(system, root, task, seed, item_names, reason, failure, np.array(factors))
 
 
 def _result(
@@ -113,7 +108,7 @@ def _result(
     seed: int,
     item_names: list[str],
     reason: str,
-    fault: bool,
+    failure: str,
     factors: np.ndarray,
 ) -> RunResult:
     context = system.monitor.GetMyContextFromRoot(root)
@@ -130,5 +125,5 @@ def _result(
         max_penetration_m=float(penetration),
         signals=system.log.signals(root),
         realtime_factors=factors,
-        fault=fault,
+        failure=failure,
     )

@@ -37,8 +37,9 @@ class RunResult:
     """Raw signals of `diagrams.run_log.RunLog`."""
     realtime_factors: np.ndarray
     """Simulated over elapsed time of each half second that was simulated."""
-    fault: bool = False
-    """Whether something inside the run ended it, and not the task, the operator, a person or the clock."""
+    failure: str = ""
+    """What ended the run where something inside did, and not the task, the operator, a person or the clock: the
+    library's own words."""
 
 
 def summarize(result: RunResult) -> dict[str, Any]:
@@ -56,7 +57,7 @@ def summarize(result: RunResult) -> dict[str, Any]:
     factors = result.realtime_factors
     return {
         "task": result.task,
-        "success": bool(placed.size > 0 and placed.all()),
+        "success": bool(placed.size > 0 and placed.all() and not result.failure),
         "reason": result.reason,
         "seed": result.seed,
         "items": [
@@ -88,7 +89,7 @@ def summarize(result: RunResult) -> dict[str, Any]:
         "realtime_factor": _rounded(len(factors) / (1 / factors).sum(), 3) if len(factors) else None,
         "realtime_factor_worst_half_second": _rounded(factors.min(), 3) if len(factors) else None,
         "version": version("geosacs-drake"),
-    }
+    } | ({"failure": result.failure} if result.failure else {})
 
 
 WALL_CLOCK_KEYS = ("ik.p50_ms", "ik.p99_ms", "realtime_factor", "realtime_factor_worst_half_second")

@@ -14,7 +14,8 @@ from pydrake.systems.analysis import Simulator
 from pydrake.systems.framework import Context, DiagramBuilder
 
 from benchmarks.acceptance.check import Check, Figures, Job, Worst, at_least
-from diagrams.lio_station import checked_posture, plant_config, set_drives
+from diagrams.lio_drive import LioDrive
+from diagrams.lio_station import arm_stops, plant_config, set_drives
 from diagrams.scenario import Scenario, load_scenario, with_items
 from diagrams.scene import add_scene
 from diagrams.shared_autonomy import build_shared_autonomy
@@ -42,7 +43,7 @@ def bare_scene(scenario: Scenario, q0: np.ndarray) -> Simulator:
         machine = scene.things.get("machine", [])
         prepare_for_cloth(plant=plant, scene_graph=scene_graph, robot=scene.lio, fallen_into=machine)
     plant.Finalize()
-    plant.SetDefaultPositions(scene.lio, checked_posture(plant, scene.lio, q0))
+    plant.SetDefaultPositions(scene.lio, LioDrive(q0, arm_stops(plant, scene.lio)).start_positions())
     simulator = Simulator(builder.Build())
     context = plant.GetMyContextFromRoot(simulator.get_mutable_context())
     port = plant.get_desired_state_input_port(scene.lio)

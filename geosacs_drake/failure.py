@@ -1,0 +1,61 @@
+"""What ended a run from inside, in our words: what failed, when, and how everything stood then."""
+
+from __future__ import annotations
+
+import numpy as np
+from pydrake.systems.framework import Context
+
+from canal.navigation import Leg, NavigationState
+from diagrams.rest import Rest
+from diagrams.shared_autonomy import SharedAutonomy
+
+IN_HAND = 0.03
+"""[m] A thing whose bounds come nearer to the tool than this, while the gripper is closed, is in the hand."""
+
+
+def describe_failure(error: BaseException, system: SharedAutonomy, rest: Rest, root: Context) -> str:
+    """One line without the library's own words, which the summary has under `failure`."""
+    try:
+        state = _state(system, rest, root)
+    except (RuntimeError, ValueError, SystemExit):  # of Drake, asked about a state that is none
+        state = "in a state of which nothing can be computed"
+    return f"{_what(error)} at {root.get_time():.3f} s ({state})"
+
+
+def _what(error: BaseException) -> str:
+    text = str(error)
+    if "websocket thread" in text:
+        return "the page failed, a client sent it what Meshcat cannot read,"
+    if "converge" in text:
+        return "the contact solver did not converge"
+    if isinstance(error, RuntimeError):  # of Drake's solvers: the plant's state has left what can be simulated
+        return "a step of the simulation failed"
+    return f"a step of the simulation failed ({type(error).__name__})"
+
+
+def _state(system: SharedAutonomy, rest: Rest, root: Context) -> str:
+    """Where the robot was, in which state, with what in the hand, and what was being simulated."""
+    context = system.navigator.GetMyContextFromRoot(root)
+    navigation = NavigationState.from_vector(system.navigator.GetOutputPort("navigation_state").Eval(context))
+    doing = "travelling"
+    for name in ("correcting", "waiting", "blocked"):
+        if getattr(navigation, name, 0.0):
+            doing = name
+    if not navigation.running:
+        doing = "not running"
+    gripper = "closed" if navigation.gripper_closed else "open"
+    held = _in_hand(system, root) if navigation.gripper_closed else []
+    awake = rest.names_awake(root)
+    return (
+        f"leg {Leg(int(navigation.leg)).name.lower()}, disk {navigation.disk:.1f}, {doing}, gripper {gripper}, "
+        f"in the hand: {', '.join(held) or 'nothing'}, awake: {', '.join(awake) or 'nothing'}"
+    )
+
+
+def _in_hand(system: SharedAutonomy, root: Context) -> list[str]:
+    station = system.station
+    context = station.GetMyContextFromRoot(root)
+    p_WT = station.X_WB.multiply(station.GetOutputPort("X_BT").Eval(context)[:3])
+    bounds = station.GetOutputPort("item_bounds").Eval(context).reshape(-1, 2, 3)
+    away = np.maximum(bounds[:, 0] - p_WT, p_WT - bounds[:, 1]).max(axis=1)
+    return [item.name for item, gap in zip(station.scene.items, away, strict=True) if gap < IN_HAND]
