@@ -20,7 +20,8 @@ from benchmarks.ik_clear import keep_clear
 from benchmarks.ik_fuzz import fuzz
 from benchmarks.ik_rivals import SAME_OBJECTIVE, Contender, contenders
 from benchmarks.table import Row, print_table, write_csv
-from diagrams.ik_solver import IkSolver, _target
+from diagrams.ik_solver import IkSolver
+from diagrams.ik_target import wanted_pose
 from diagrams.lio_arm import TCP_FRAME, make_arm_plant
 
 _GAP_FLOOR = 1e-9
@@ -93,7 +94,7 @@ def race(
             if tick % every:
                 q_next = solver.solve(X, case.weight, q, DT, v).q
             else:
-                lower, upper = solver.bounds.box(q, DT)
+                lower, upper = solver.box(q, DT)
                 answers = {}
                 for index in rng.permutation(len(names)):
                     name = names[index]
@@ -144,9 +145,9 @@ def _judge(
 
 def set_tick(solver: IkSolver, X: np.ndarray, w: float, q: np.ndarray) -> None:
     """Make the solver's objective that of a tick."""
-    target = _target(X)
+    target = wanted_pose(X)
     assert target is not None
-    solver.objective.set_target(*target, (w, w, w), q)
+    solver.objective.set_target(*target, w, q)
 
 
 def polish(solver: IkSolver, q: np.ndarray, lower: np.ndarray, upper: np.ndarray) -> float:
@@ -171,7 +172,7 @@ def exactness(solver: IkSolver, cases: list[Case], every: int) -> list[Row]:
         for tick, X in enumerate(case.poses):
             result = solver.solve(X, case.weight, q, DT, v)
             if tick % every == 0:
-                lower, upper = solver.bounds.box(q, DT)
+                lower, upper = solver.box(q, DT)
                 set_tick(solver, X, case.weight, q)
                 best = min(polish(solver, start, lower, upper) for start in (result.q, rng.uniform(lower, upper)))
                 best = min(best, result.cost)

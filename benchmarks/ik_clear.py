@@ -45,10 +45,10 @@ def arm_and(shape: Shape, p: list[float]) -> tuple[MultibodyPlant, Diagram]:
     return plant, builder.Build()
 
 
-def solver_beside_wall(**options: object) -> IkSolver:
-    """A solver that keeps clear of the wall; `options` as for KeepClearOptions."""
+def solver_beside_wall() -> IkSolver:
+    """A solver that keeps clear of the wall."""
     plant, diagram = arm_and(Box(0.2, 2.0, 2.0), [WALL_X + 0.1, 0.0, 1.0])
-    keep_clear = KeepClearOptions(margin=MARGIN, solid_bodies=["obstacle"], **options)  # type: ignore[arg-type]
+    keep_clear = KeepClearOptions(margin=MARGIN, solid_bodies=["obstacle"])
     return IkSolver(plant, TCP_FRAME, IkOptions(keep_clear=keep_clear), diagram=diagram)
 
 
@@ -65,10 +65,10 @@ def deep_path(reach: float = DEEP) -> list[np.ndarray]:
 
 
 def least_distance(solver: IkSolver, q: np.ndarray) -> float:
-    """Of a watched pair, at posture q (n,) [m]."""
+    """Of a watched pair, at posture q (n,) [m]; 0.1 when none is nearer."""
     assert solver.clearance is not None
     solver.kinematics.set(q)
-    return solver.clearance.least()
+    return float(solver.clearance.near(0.1 - MARGIN).distances.min(initial=0.1))
 
 
 def keep_clear() -> list[Row]:

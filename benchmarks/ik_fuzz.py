@@ -25,7 +25,7 @@ def fuzz(solver: IkSolver, ticks: int, seed: int = 0) -> list[Row]:
         elif dice < 0.5:
             X = X + rng.normal(scale=0.01, size=7)
         w = rng.choice([0.0, 0.1, 1.0, 15.0, 1e6, -3.0, np.nan, np.inf, 1e300])
-        weights = rng.choice([0.0, 1.0, 15.0, 1e6], size=3) if rng.random() < 0.1 else float(w)
+        weight = np.array([w]) if rng.random() < 0.1 else float(w)
         dt = 0.01 if rng.random() < 0.9 else float(rng.choice([0.001, 0.1, 1.0, 0.0, -1.0, np.nan, np.inf, 1e300]))
         if rng.random() < 0.003:
             q = q + rng.normal(scale=3.0, size=solver.n)
@@ -34,7 +34,7 @@ def fuzz(solver: IkSolver, ticks: int, seed: int = 0) -> list[Row]:
             if values is not None and rng.random() < 0.003:
                 values[rng.integers(solver.n)] = rng.choice(_BAD)
         try:
-            result = solver.solve(X, weights, q_given, dt, v_given)
+            result = solver.solve(X, weight, q_given, dt, v_given)
         except (Exception, SystemExit):
             exceptions += 1
             continue

@@ -14,7 +14,8 @@ from pydrake.solvers import NloptSolver, SnoptSolver
 from scipy.optimize import minimize
 
 from benchmarks.ik_cases import DT
-from diagrams.ik_solver import IkSolver, _target
+from diagrams.ik_solver import IkSolver
+from diagrams.ik_target import wanted_pose
 from diagrams.lio_arm import BASE_FRAME, TCP_FRAME, make_arm_plant
 from models import LIO_URDF
 
@@ -52,9 +53,9 @@ def contenders(solver: IkSolver) -> dict[str, Contender]:
 
 
 def _set_tick(solver: IkSolver, X: np.ndarray, w: float, q: np.ndarray) -> None:
-    target = _target(X)
+    target = wanted_pose(X)
     assert target is not None
-    solver.objective.set_target(*target, (w, w, w), q)
+    solver.objective.set_target(*target, w, q)
 
 
 def _panoc(solver: IkSolver, *, differences: bool) -> Contender:

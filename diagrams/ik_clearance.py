@@ -1,5 +1,7 @@
 """Distances of the arm to itself and to what is solid around it, with their slopes in the joints."""
 
+import math
+
 import numpy as np
 from pydrake.geometry import CollisionFilterDeclaration, GeometryId, GeometrySet, QueryObject, Role, SceneGraph
 from pydrake.multibody.tree import JointIndex, ModelInstanceIndex, RigidBody
@@ -9,6 +11,15 @@ from canal.errors import InputError
 from diagrams.ik_kinematics import ArmKinematics
 from diagrams.ik_options import KeepClearOptions
 
+# Price of a metre of missing clearance [cost] / [m]: a start inside an obstacle has a way out, and wherever the margin
+# can be kept it is.
+SLACK_PRICE = 1e4
+# Kept beyond the margin [m], so that what the linearisation leaves over stays on the safe side.
+_PAD = 2e-6
+# Rows are formed for pairs within this of the margin [m]; the step is checked against all.
+_NEAR = 0.01
+_KEPT = 4
+_AT_MARGIN = 1e-5  # [m], nearer than this beyond the margin counts as at it
 _POSTURES = 40  # random ones, to tell pairs that can part from pairs that never do
 
 
@@ -27,10 +38,6 @@ class Clearance:
     def __init__(
         self, kinematics: ArmKinematics, diagram: Diagram, root_context: Context, options: KeepClearOptions
     ) -> None:
-        if not 0.0 <= options.margin < options.influence:
-            raise InputError(
-                f"keep_clear: margin {options.margin:g} m; give one from 0 to below influence {options.influence:g} m"
-            )
         self.options = options
         self._kinematics = kinematics
         plant = kinematics.plant
@@ -87,16 +94,14 @@ class Clearance:
                 break
         return [pair for pair in candidates if pair in parted]
 
-    def least(self) -> float:
-        """The smallest distance of a watched pair [m], `influence` when none is nearer."""
-        pairs = self._query().ComputeSignedDistancePairwiseClosestPoints(self.options.influence)
-        return min((pair.distance for pair in pairs), default=self.options.influence)
-
     def near(self, reach: float) -> "NearPairs":
         """Pairs nearer than margin + reach [m], at the posture that was set."""
-        limit = min(self.options.margin + reach, self.options.influence)
         query = self._query()
-        return NearPairs(query, query.ComputeSignedDistancePairwiseClosestPoints(limit))
+        return NearPairs(query, query.ComputeSignedDistancePairwiseClosestPoints(self.options.margin + reach))
+
+    def at_margin(self, distance: float) -> bool:
+        """Whether a least distance [m] is (nearly) the margin, or below."""
+        return distance < self.options.margin + _AT_MARGIN
 
     def slopes(self, near: "NearPairs") -> np.ndarray:
         """∂d/∂q of near pairs (k, n) [m/rad]; the posture must still be set.
@@ -126,6 +131,36 @@ class NearPairs:
     def __init__(self, query: QueryObject, pairs: list) -> None:
         self.query, self.pairs = query, pairs
         self.distances = np.array([pair.distance for pair in pairs])
+
+
+class Cuts:
+    """What the distances demand of one tick's step s = q - q_prev: rows A s ≥ a, from each posture that was tried.
+
+    A flat pair's nearest corner jumps to and fro, so the last few linearisations stay.
+
+    Attributes:
+        rows: pairs of A (k, n) [m/rad] and a (k,) [m]; none without a clearance.
+        least: smallest distance where `add` was last called [m], or as far as it looked; NaN without a clearance.
+    """
+
+    def __init__(self, clearance: Clearance | None, q_prev: np.ndarray) -> None:
+        self._clearance, self._q_prev = clearance, q_prev
+        self.rows: list[tuple[np.ndarray, np.ndarray]] = []
+        self.least = math.nan
+
+    def add(self, q: np.ndarray) -> float:
+        """Linearise at q (n,), to which the kinematics was set, and return the price of what is missing there."""
+        if self._clearance is None:
+            return 0.0
+        near, margin = self._clearance.near(_NEAR), self._clearance.options.margin
+        A = self._clearance.slopes(near)
+        self.rows = [*self.rows[1 - _KEPT :], (A, margin + _PAD - near.distances + A.dot(q - self._q_prev))]
+        self.least = float(near.distances.min(initial=margin + _NEAR))
+        return self.price(margin + _PAD - self.least)
+
+    def price(self, lack: float) -> float:
+        """Of a clearance that lacks this [m] of the margin and the pad; half of the pad is free."""
+        return SLACK_PRICE * max(lack - 0.5 * _PAD, 0.0)
 
 
 def _moving_bodies(kinematics: ArmKinematics, joints: list[JointIndex]) -> list[RigidBody]:

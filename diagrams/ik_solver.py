@@ -7,28 +7,32 @@ from typing import NamedTuple
 import numpy as np
 from pydrake.multibody.plant import MultibodyPlant
 from pydrake.multibody.tree import Frame
+from pydrake.solvers import MathematicalProgram
 from pydrake.systems.framework import Diagram
+from scipy.linalg.lapack import dpotrs
 
 from canal.errors import InputError
-from diagrams.ik_bounds import StepBounds
-from diagrams.ik_clear_step import ClearStep, minimise_clear
-from diagrams.ik_clearance import Clearance
+from diagrams.ik_clearance import SLACK_PRICE, Clearance, Cuts
 from diagrams.ik_kinematics import ArmKinematics
 from diagrams.ik_objective import PoseObjective
 from diagrams.ik_options import IkOptions, IkStatus
-from diagrams.ik_quadratic import BoxQuadraticProgram
+from diagrams.ik_program import StepProgram
+from diagrams.ik_target import all_finite, wanted_pose, wanted_weight
 
+POSITION_TOLERANCE = 1e-3
+"""A miss above this [m] at rest is reported as out of reach."""
 # Gap to the optimum at which a tick ends, relative to the cost; the floor is the cost of standing still exactly.
-_RELATIVE_GAP = 1e-7
+_RELATIVE_GAP = 3e-8
 _COST_FLOOR = 1e-9
-# A target further off than this [m] pulls in the same direction, and its square stays finite.
-_FAR = 1e3
-_LEAST_QUATERNION = 1e-6
-_AT_MARGIN = 1e-5  # [m], nearer than this beyond the margin counts as at it
+_MOST_STEPS = 30
 _DAMPING_GROWTH = 4.0
-# In a box narrower than this [rad] the quadratic model holds throughout, also where it is not convex.
-_NARROW = 0.2
-_HEAVIEST = 1e9  # an orientation weight above this is as good as infinite
+AT_REST = 1e-8
+"""Of a step [rad] that is smaller in every joint nothing is done: the posture is the best one already, to 10 nm at the
+tool, and the arm stands exactly still instead of creeping along the flat of the objective for ever."""
+# A last step below this [rad] is no start: within the gap it could go on for ever.
+_SLOW = 1e-4
+# A start that costs more than this (3 mm off) has to be better than the last posture, since the gap is wide there.
+_COSTLY = 1e-3
 
 
 class IkResult(NamedTuple):
@@ -44,6 +48,9 @@ class IkResult(NamedTuple):
     orientation_error: float
     """[rad], NaN when held."""
     iterations: int
+    """Quadratic programs."""
+    solver_calls: int
+    """How many of them were solved by Drake's solver, since an inequality was active."""
     bound_violation: float
     """Largest excess over the tick's bounds [rad]."""
     solve_time: float
@@ -61,6 +68,7 @@ class IkSolver:
     Attributes:
         kinematics: the chain of joints; q_min, q_max, v_max: the bounds in use, shape (n,).
         clearance: distances, when keeping clear.
+        posture, step: decision variables of `program`: q at the tick's end and q - q_prev, shape (n,).
         options: as given.
     """
 
@@ -97,24 +105,20 @@ class IkSolver:
             raise InputError(
                 f"soft_limit_margin {options.soft_limit_margin:g} rad leaves joint '{joint}' no range; make it smaller"
             )
-        speeds = _per_joint("speed_limits", options.speed_limits, n)
-        self.v_max = self.kinematics.v_max if speeds is None else speeds
+        if len(options.speed_limits) not in (0, n):
+            raise InputError(f"speed_limits {options.speed_limits}: give {n} positive values, one a joint")
+        self.v_max = np.array(options.speed_limits) if options.speed_limits else self.kinematics.v_max
         if not np.all(np.isfinite(self.v_max)):
             raise InputError("the model gives no joint speed limits; set speed_limits [rad/s] in the IK options")
-        self.a_max = _per_joint("acceleration_limits", options.acceleration_limits, n)
-        self.bounds = StepBounds(self.q_min, self.q_max, self.v_max, self.a_max)
         self.objective = PoseObjective(self.kinematics, options.position_weight)
-        self.quadratic = BoxQuadraticProgram(n, options.qp_solvers)
         self._identity = np.eye(n)
         self.clearance: Clearance | None = None
         if options.keep_clear is not None:
             if diagram is None or root_context is None:
                 raise InputError("keep_clear needs the diagram of the plant and its SceneGraph; give `diagram`")
             self.clearance = Clearance(self.kinematics, diagram, root_context, options.keep_clear)
-            self._clear_step = ClearStep(n, options.keep_clear.slack_weight)
-        self._axis_weights = tuple(float(w) for w in options.axis_weights)
-        if len(self._axis_weights) != 3 or not all(w >= 0.0 and math.isfinite(w) for w in self._axis_weights):
-            raise InputError(f"axis_weights {options.axis_weights}: give three finite factors >= 0")
+        self.quadratic = StepProgram(n, None if self.clearance is None else SLACK_PRICE)
+        self.posture, self.step = self.quadratic.posture, self.quadratic.step
         self._q_middle = np.clip(
             np.where(np.isfinite(self.q_min + self.q_max), self.kinematics.q_default, 0.0), self.q_min, self.q_max
         )
@@ -123,6 +127,15 @@ class IkSolver:
     def n(self) -> int:
         """Number of joints."""
         return self.kinematics.n
+
+    @property
+    def program(self) -> MathematicalProgram:
+        """The quadratic program of a step, to add costs and constraints of one's own to: see `StepProgram`.
+
+        They belong to functions of `posture`, `step` and variables that are added with them, and hold from the next
+        tick on. Where they cannot be met, the arm holds.
+        """
+        return self.quadratic.program
 
     def solve(
         self,
@@ -146,150 +159,121 @@ class IkSolver:
         """
         begin = time.perf_counter()
         q_prev = np.asarray(q_prev, dtype=float)
-        held = not _all_finite(q_prev)
+        held = not all_finite(q_prev)
         if held:
             q_prev = np.where(np.isfinite(q_prev), q_prev, self._q_middle)
         if not (dt > 0.0 and math.isfinite(dt)):
             dt, held = 0.0, True
         if v_prev is not None:
             v_prev = np.asarray(v_prev, dtype=float)
-            if not _all_finite(v_prev):
+            if not all_finite(v_prev):
                 v_prev, held = np.zeros(self.n), True
-        lower, upper = self.bounds.box(q_prev, dt, v_prev)
-        target = None if held else _target(X_desired)
-        weights = None if held else self._weights(w_o)
-        if target is None or weights is None:
+        lower, upper = self.box(q_prev, dt)
+        target = None if held else wanted_pose(X_desired)
+        weight = None if held else wanted_weight(w_o)
+        if target is None or weight is None:
             return self._hold(q_prev, lower, upper, begin)
-        self.objective.set_target(*target, weights, q_prev)
-        start = q_prev if v_prev is None else q_prev + v_prev * dt
-        start = np.minimum(np.maximum(start, lower), upper)
-        clearance, near = math.nan, False
-        if self.clearance is None:
-            q, cost, iterations, active = self._minimise(start, lower, upper)
-        else:
-            q, cost, iterations, active, clearance = minimise_clear(
-                self.objective,
-                self.clearance,
-                self.quadratic,
-                self._clear_step,
-                start,
-                lower,
-                upper,
-                self.options.max_iterations,
-            )
-            near = clearance < self.clearance.options.margin + _AT_MARGIN
+        self.objective.set_target(*target, weight, q_prev)
+        start = q_prev
+        if v_prev is not None and max(map(abs, v_prev.tolist())) * dt > _SLOW:
+            start = q_prev + v_prev * dt
+        calls = self.quadratic.solver_calls
+        q, cost, iterations, clearance = self._minimise(
+            np.minimum(np.maximum(start, lower), upper), q_prev, lower, upper
+        )
+        calls = self.quadratic.solver_calls - calls
         if not math.isfinite(cost):
             return self._hold(q_prev, lower, upper, begin)
+        if np.abs(q - q_prev).max() < AT_REST and ((q_prev >= lower) & (q_prev <= upper)).all():
+            q = q_prev.copy()
         position, orientation = self.objective.position_error, self.objective.orientation_error
+        active = (q <= lower) | (q >= upper)
+        near = self.clearance is not None and self.clearance.at_margin(clearance)
         status = IkStatus.AT_BOUND if near or active.any() else IkStatus.CONVERGED
-        options = self.options
-        if position > options.position_tolerance or (
-            0.0 < options.orientation_tolerance < orientation and max(weights) > 0.0
-        ):
+        if position > POSITION_TOLERANCE:
             at_limit = (q <= self.q_min) | (q >= self.q_max)
             if not (active & ~at_limit).any():
                 status = IkStatus.OUT_OF_REACH
-        violation = float(np.maximum(lower - q, q - upper).max())
+        violation = max(float(np.maximum(lower - q, q - upper).max()), 0.0)
         spent = time.perf_counter() - begin
-        return IkResult(q, status, cost, position, orientation, iterations, max(violation, 0.0), spent, clearance)
+        return IkResult(q, status, cost, position, orientation, iterations, calls, violation, spent, clearance)
+
+    def box(self, q_prev: np.ndarray, dt: float) -> tuple[np.ndarray, np.ndarray]:
+        """Least and largest posture (n,) that a tick of dt [s] from q_prev (n,) may end in.
+
+        Position limits hold unless the start lies outside them; then the joint comes back as fast as its speed allows.
+        """
+        reach = self.v_max * dt
+        below, above = q_prev - reach, q_prev + reach
+        return (
+            np.minimum(np.maximum(self.q_min, below), above),
+            np.maximum(np.minimum(self.q_max, above), below),
+        )
 
     def _minimise(
-        self, q: np.ndarray, lower: np.ndarray, upper: np.ndarray
-    ) -> tuple[np.ndarray, float, int, np.ndarray]:
-        """Newton's method from q within the box: posture, cost, iterations, joints at a bound.
+        self, q: np.ndarray, q_prev: np.ndarray, lower: np.ndarray, upper: np.ndarray
+    ) -> tuple[np.ndarray, float, int, float]:
+        """Gauss-Newton's method from q, damped where it does not descend: posture, cost, iterations, least distance.
 
-        The objective is left evaluated at the posture that is returned.
+        The cost is f, the price of missing clearance and the user's own costs; it is infinite if the program has no
+        solution. The objective is left evaluated at the posture that is returned.
         """
         objective, quadratic = self.objective, self.quadratic
+        quadratic.begin_tick(q_prev, lower, upper)
+        cuts = Cuts(self.clearance, q_prev)
         f = objective.value(q)
-        active = (q <= lower) | (q >= upper)
-        damping, narrow = 0.0, bool((upper - lower).max() < _NARROW)
-        gradient = None
-        iteration = 0
-        while iteration < self.options.max_iterations:
+        if f > _COSTLY:
+            at_rest = np.minimum(np.maximum(q_prev, lower), upper)
+            q = at_rest if objective.value(at_rest) <= f else q
+            f = objective.value(q)
+        cost, least = f + cuts.add(q), cuts.least
+        if quadratic.extended:
+            cost = math.inf  # what a user demands need not hold here
+        gradient, hessian = objective.model()
+        damping, iteration, here = 0.0, 0, True
+        while iteration < _MOST_STEPS:
             iteration += 1
-            if gradient is None:
-                gradient, hessian, curvature = objective.derivatives()
             model = hessian if damping == 0.0 else hessian + damping * self._identity
-            found = quadratic.solve(model, gradient, lower - q, upper - q)
-            if found is None and not narrow:
-                model = model - curvature
-                found = quadratic.solve(model, gradient, lower - q, upper - q)
-            if found is None:
-                found = quadratic.descend(model, gradient, lower - q, upper - q)
-            step, at_bound = found
-            expected = -float(gradient.dot(step) + 0.5 * step.dot(model.dot(step)))
-            if expected <= 0.1 * _RELATIVE_GAP * max(f, _COST_FLOOR):
-                active = at_bound
-                break
-            q_new = np.minimum(np.maximum(q + step, lower), upper)
-            f_new = objective.value(q_new)
-            if not f_new < f:
-                objective.value(q)
-                # At least what makes the model agree with what was seen along this step.
-                seen = 2.0 * (f_new - f + expected) / float(step.dot(step))
-                damping = max(_DAMPING_GROWTH * damping, seen)
+            step = quadratic.solve(f, gradient, model, q, cuts.rows)
+            if step is None:
+                if cost == math.inf:
+                    break
+                damping = max(_DAMPING_GROWTH * damping, float(np.abs(hessian).sum(axis=1).max()))
                 continue
-            damping = 0.0 if f - f_new > 0.5 * expected else damping / _DAMPING_GROWTH
-            q, f, active = q_new, f_new, at_bound
-            if quadratic.remaining(objective.gradient()) <= _RELATIVE_GAP * max(f, _COST_FLOOR):
+            predicted = step.cost + cuts.price(step.slack) + step.extra
+            expected, enough = cost - predicted, _RELATIVE_GAP * max(abs(predicted), _COST_FLOOR)
+            if expected <= enough:
                 break
-            gradient = None
-        return q, f, iteration, active
-
-    def _weights(self, w_o: float | np.ndarray) -> tuple[float, float, float] | None:
-        """Weights about the tool's axes, at least 0; None if not finite."""
-        if isinstance(w_o, float):
-            w = (w_o, w_o, w_o)
-        else:
-            given = np.asarray(w_o, dtype=float).ravel().tolist()
-            w = (given[0],) * 3 if len(given) == 1 else tuple(given)
-        if not (len(w) == 3 and math.isfinite(w[0] + w[1] + w[2])):
-            return None
-        a = self._axis_weights
-        x, y, z = (min(max(value, 0.0), _HEAVIEST) for value in w)
-        return x * a[0], y * a[1], z * a[2]
+            f_new = objective.value(step.q)
+            cost_new = f_new + cuts.add(step.q) + step.extra
+            here = cost_new < cost
+            error = cost_new - predicted
+            if cost < math.inf:
+                # So much damping that the model would have agreed with what was seen along this step.
+                damping = max(damping + 2.0 * error / float((step.q - q).dot(step.q - q)), 0.0)
+            if not here:
+                continue
+            q, f, cost, least = step.q, f_new, cost_new, cuts.least
+            if step.factor is not None and cost == f:
+                if _left(objective.gradient(), step.factor, q <= lower, q >= upper) <= enough:
+                    break
+            elif error * error < enough * expected < math.inf:
+                break  # what the model missed, squared, over what it promised, is what is left
+            gradient, hessian = objective.model()
+        if not here:
+            objective.value(q)
+        return q, cost, iteration, least
 
     def _hold(self, q_prev: np.ndarray, lower: np.ndarray, upper: np.ndarray, begin: float) -> IkResult:
         """The last posture, or the nearest that the bounds allow (braking, or on the way back into the limits)."""
         q = np.minimum(np.maximum(q_prev, lower), upper)
         nan = math.nan
-        return IkResult(q, IkStatus.HELD, nan, nan, nan, 0, 0.0, time.perf_counter() - begin)
+        return IkResult(q, IkStatus.HELD, nan, nan, nan, 0, 0, 0.0, time.perf_counter() - begin)
 
 
-def _all_finite(values: np.ndarray) -> bool:
-    """Whether all entries are finite and small enough for their arithmetic to stay so."""
-    return all(-1e9 < value < 1e9 for value in values.tolist())
-
-
-def _target(X: np.ndarray) -> tuple[np.ndarray, np.ndarray] | None:
-    """Position (3,) and rotation (3, 3) of a pose vector (7,); None if it has no usable value."""
-    values = np.asarray(X, dtype=float).ravel().tolist()
-    if len(values) != 7 or not all(map(math.isfinite, values)):
-        return None
-    x, y, z, qw, qx, qy, qz = values
-    length = math.hypot(qw, qx, qy, qz)
-    if not _LEAST_QUATERNION < length < 1.0 / _LEAST_QUATERNION:
-        return None
-    qw, qx, qy, qz = qw / length, qx / length, qy / length, qz / length
-    p = np.array((x, y, z))
-    distance = math.hypot(x, y, z)
-    if distance > _FAR:
-        p = p / distance * _FAR
-    xx, yy, zz = 2.0 * qx * qx, 2.0 * qy * qy, 2.0 * qz * qz
-    xy, xz, yz = 2.0 * qx * qy, 2.0 * qx * qz, 2.0 * qy * qz
-    wx, wy, wz = 2.0 * qw * qx, 2.0 * qw * qy, 2.0 * qw * qz
-    R = np.array(
-        ((1.0 - yy - zz, xy - wz, xz + wy), (xy + wz, 1.0 - xx - zz, yz - wx), (xz - wy, yz + wx, 1.0 - xx - yy))
-    )
-    return p, R
-
-
-def _per_joint(name: str, given: list[float], n: int) -> np.ndarray | None:
-    """One positive value a joint; None when none is given."""
-    if not given:
-        return None
-    values = np.asarray(given, dtype=float)
-    if values.shape != (n,) or not np.all(values > 0.0):
-        raise InputError(f"{name} {given}: give {n} positive values, one a joint")
-    return values
+def _left(gradient: np.ndarray, factor: np.ndarray, at_lower: np.ndarray, at_upper: np.ndarray) -> float:
+    """What one more step with the last one's factor would gain, ½ gᵀH⁻¹g; infinite if a bound would let go."""
+    if (at_lower & (gradient < 0.0) | at_upper & (gradient > 0.0)).any():
+        return math.inf
+    g = np.where(at_lower | at_upper, 0.0, gradient)
+    return 0.5 * float(g.dot(dpotrs(factor, g)[0]))

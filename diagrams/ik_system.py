@@ -13,9 +13,6 @@ from diagrams.ik_options import IkOptions
 from diagrams.ik_solver import IkSolver
 
 CONTROL_PERIOD = 0.01  # [s]
-AT_REST = 1e-8
-"""Of a step [rad] that is smaller in every joint nothing is done: the posture is the best one already, to 10 nm at the
-tool, and the arm stands exactly still instead of creeping along the flat of the objective for ever."""
 
 
 class IkStatusField(enum.IntEnum):
@@ -45,7 +42,7 @@ class OrientationWeightedIk(LeafSystem):
                           ┌───────────────────────┐
     X_BT_desired (7)    → │                       │ → desired_state (2n)
     orientation_weight  → │ OrientationWeightedIk │ → ik_status (8)
-        (1 or 3)          └───────────────────────┘
+        (1)               └───────────────────────┘
     ```
 
     desired_state is q_command then v_command; X_BT_desired is position [m] and quaternion (w, x, y, z). The state is
@@ -53,9 +50,7 @@ class OrientationWeightedIk(LeafSystem):
     finite holds the posture and says so in `ik_status`.
     """
 
-    def __init__(
-        self, solver: IkSolver, *, q_start: np.ndarray, period: float = CONTROL_PERIOD, n_weights: int = 1
-    ) -> None:
+    def __init__(self, solver: IkSolver, *, q_start: np.ndarray, period: float = CONTROL_PERIOD) -> None:
         super().__init__()
         n = solver.n
         q_start = np.asarray(q_start, dtype=float)
@@ -63,11 +58,11 @@ class OrientationWeightedIk(LeafSystem):
             raise InputError(f"q_start {q_start}: give {n} finite joint positions")
         self._solver, self._period = solver, period
         self._target_port = self.DeclareVectorInputPort("X_BT_desired", 7)
-        self._weight_port = self.DeclareVectorInputPort("orientation_weight", n_weights)
+        self._weight_port = self.DeclareVectorInputPort("orientation_weight", 1)
         command = self.DeclareDiscreteState(np.concatenate((q_start, np.zeros(n))))
         status = self.DeclareDiscreteState(len(IkStatusField))
         # Pose and weights that the posture has been held for; not finite while it moves.
-        self._held_for = int(self.DeclareDiscreteState(np.full(7 + n_weights, np.nan)))
+        self._held_for = int(self.DeclareDiscreteState(np.full(8, np.nan)))
         self._command, self._status = int(command), int(status)
         self.DeclareStateOutputPort("desired_state", command)
         self.DeclareStateOutputPort("ik_status", status)
@@ -95,11 +90,8 @@ class OrientationWeightedIk(LeafSystem):
             updates.set_value(self._status, status)
             return  # the same question from the same posture at rest: the same answer
         result = self._solver.solve(target, weight, q_prev, self._period, command[n:])
-        step = result.q - q_prev
-        still = bool(np.abs(step).max() < AT_REST)
-        moved = (q_prev, np.zeros(n)) if still else (result.q, step / self._period)
-        updates.set_value(self._command, np.concatenate(moved))
-        held = still and not command[n:].any()
+        updates.set_value(self._command, np.concatenate((result.q, (result.q - q_prev) / self._period)))
+        held = np.array_equal(result.q, q_prev) and not command[n:].any()
         updates.set_value(self._held_for, np.array(asked) if held else np.full(len(asked), np.nan))
         updates.set_value(
             self._status,
@@ -138,8 +130,7 @@ class OrientationWeightedIk(LeafSystem):
         `diagram` holds it with its SceneGraph when the options ask to keep clear.
         """
         solver = IkSolver(plant, tcp_frame, options, base_frame, diagram)
-        n_weights = 1 if orientation_weight is None else orientation_weight.size()
-        system = OrientationWeightedIk(solver, q_start=q_start, period=period, n_weights=n_weights)
+        system = OrientationWeightedIk(solver, q_start=q_start, period=period)
         builder.AddNamedSystem(name, system)
         if X_BT_desired is not None:
             builder.Connect(X_BT_desired, system.GetInputPort("X_BT_desired"))
