@@ -2,13 +2,22 @@
 
 from dataclasses import replace
 
-from pydrake.multibody.plant import AddMultibodyPlantSceneGraph
+from pydrake.multibody.plant import AddMultibodyPlantSceneGraph, MultibodyPlant
 from pydrake.systems.framework import DiagramBuilder
 
+from diagrams.ik_options import IkOptions
 from diagrams.ik_solver import IkSolver
-from diagrams.lio_arm import BASE_FRAME, TCP_FRAME, make_arm_plant
+from diagrams.lio_arm import BASE_FRAME, TCP_FRAME, arm_speeds, make_arm_plant
+from diagrams.lio_drive import SPEED_SHARE
 from diagrams.scenario import Scenario
 from diagrams.scene import add_scene
+
+
+def _within_drives(options: IkOptions, arm: MultibodyPlant) -> IkOptions:
+    """The options with the speeds that the drives hold, where they give none themselves."""
+    if options.speed_limits:
+        return options
+    return replace(options, speed_limits=(SPEED_SHARE * arm_speeds(arm)).tolist())
 
 
 def make_lio_solver(scenario: Scenario) -> IkSolver:
@@ -19,10 +28,12 @@ def make_lio_solver(scenario: Scenario) -> IkSolver:
     Raises:
         InputError: an option of the IK cannot be used.
     """
-    if scenario.ik.keep_clear is None:
-        return IkSolver(make_arm_plant(), TCP_FRAME, scenario.ik)
+    arm = make_arm_plant()
+    options = _within_drives(scenario.ik, arm)
+    if options.keep_clear is None:
+        return IkSolver(arm, TCP_FRAME, options)
     builder = DiagramBuilder()
     plant, scene_graph = AddMultibodyPlantSceneGraph(builder, 0.0)
     add_scene(plant=plant, scene_graph=scene_graph, scenario=replace(scenario, items=[]), seed=0)
     plant.Finalize()
-    return IkSolver(plant, TCP_FRAME, scenario.ik, BASE_FRAME, builder.Build())
+    return IkSolver(plant, TCP_FRAME, options, BASE_FRAME, builder.Build())

@@ -1,13 +1,17 @@
 """The Lio alone, for kinematics: what the inverse kinematics computes with."""
 
+import numpy as np
 from pydrake.math import RigidTransform
 from pydrake.multibody.parsing import Parser
 from pydrake.multibody.plant import MultibodyPlant
+from pydrake.multibody.tree import RevoluteJoint
 
 from models import LIO_URDF
 
 TCP_FRAME = "tcp"
 BASE_FRAME = "lio_base"
+JOINTS = tuple(f"lio_joint_{k}" for k in range(1, 7))
+"""Of the arm, from the base on."""
 
 
 def make_arm_plant(X_WB: RigidTransform | None = None) -> MultibodyPlant:
@@ -17,3 +21,13 @@ def make_arm_plant(X_WB: RigidTransform | None = None) -> MultibodyPlant:
     plant.WeldFrames(plant.world_frame(), plant.GetFrameByName(BASE_FRAME), X_WB or RigidTransform())
     plant.Finalize()
     return plant
+
+
+def arm_joints(plant: MultibodyPlant) -> list[RevoluteJoint]:
+    """The arm's joints, from the base on."""
+    return [plant.GetJointByName(name) for name in JOINTS]
+
+
+def arm_speeds(plant: MultibodyPlant) -> np.ndarray:
+    """Highest speed of each arm joint [rad/s]. Shape (6,)."""
+    return np.array([joint.velocity_upper_limits().item() for joint in arm_joints(plant)])

@@ -15,7 +15,8 @@ from diagrams.contact_sensor import ContactSensor
 from diagrams.goals import Goal
 from diagrams.item_sensor import ItemSensor
 from diagrams.layout import make_goals
-from diagrams.lio_drive import ARM, LioDrive
+from diagrams.lio_arm import arm_joints, arm_speeds
+from diagrams.lio_drive import ARM, DAMPING, STIFFNESS, LioDrive
 from diagrams.lio_sensors import LioSensor
 from diagrams.overlaps import check_overlaps
 from diagrams.resting_arm import Standing
@@ -26,10 +27,6 @@ from diagrams.soft_contact import prepare_for_cloth
 START_POSTURE = np.array([-1.62113, -1.19688, 1.27447, 0.02532, 1.48154, -0.05674])
 """[rad] (SPEC section 6)."""
 
-STIFFNESS = (6000.0, 6000.0, 5000.0, 2500.0, 1500.0, 900.0)
-"""Of the arm's drives [N m/rad]; with DAMPING and velocity feed-forward the arm lags 4 mm at 1.4 rad/s."""
-DAMPING = (150.0, 150.0, 120.0, 60.0, 35.0, 20.0)
-"""[N m s/rad]"""
 GRIP_STIFFNESS, GRIP_DAMPING = 200.0, 4.0
 """Of the gripper's drive [N m/rad], [N m s/rad]."""
 GRIP_EFFORT = 4.0
@@ -77,8 +74,16 @@ class LioStation(Diagram):
             machine = self.scene.things.get("machine", [])
             prepare_for_cloth(plant=plant, scene_graph=scene_graph, robot=lio, fallen_into=machine)
         plant.Finalize()
-        stops = arm_stops(plant, lio)
-        drive = builder.AddNamedSystem("lio_drive", LioDrive(checked_posture(q0, stops), stops))
+        stops = arm_stops(plant)
+        drive = LioDrive(
+            checked_posture(q0, stops),
+            period=1.0 / scenario.control_rate_hz,
+            time_step=plant.time_step(),
+            stops=stops,
+            speeds=arm_speeds(plant),
+            friction=np.array([joint.default_damping() for joint in arm_joints(plant)]),
+        )
+        builder.AddNamedSystem("lio_drive", drive)
         plant.SetDefaultPositions(lio, drive.start_positions())
 
         standing = builder.AddNamedSystem("standing", Standing(drive.GetOutputPort("actuator_state").size()))
@@ -92,7 +97,8 @@ class LioStation(Diagram):
         builder.Connect(drive.GetOutputPort("actuator_state"), standing.GetInputPort("actuator_state"))
         builder.Connect(plant.get_contact_results_output_port(), standing.GetInputPort("contact_results"))
         builder.Connect(standing.GetOutputPort("actuator_state"), plant.get_desired_state_input_port(lio))
-        builder.Connect(plant.get_state_output_port(lio), sensor.GetInputPort("lio_state"))
+        for system in (sensor, drive):
+            builder.Connect(plant.get_state_output_port(lio), system.GetInputPort("lio_state"))
         poses, query = plant.get_body_poses_output_port(), scene_graph.get_query_output_port()
         builder.Connect(poses, sensor.GetInputPort("body_poses"))
         builder.Connect(poses, items.GetInputPort("body_poses"))
@@ -155,9 +161,9 @@ def set_drives(plant: MultibodyPlant, lio: ModelInstanceIndex) -> None:
     grip.set_effort_limit(GRIP_EFFORT)
 
 
-def arm_stops(plant: MultibodyPlant, lio: ModelInstanceIndex) -> tuple[np.ndarray, np.ndarray]:
+def arm_stops(plant: MultibodyPlant) -> tuple[np.ndarray, np.ndarray]:
     """Lowest and highest angle of each joint of the arm [rad], two of (6,)."""
-    joints = [plant.GetJointByName(f"lio_joint_{k + 1}", lio) for k in range(ARM)]
+    joints = arm_joints(plant)
     return (
         np.array([joint.position_lower_limit() for joint in joints]),
         np.array([joint.position_upper_limit() for joint in joints]),

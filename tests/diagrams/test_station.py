@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 from pydrake.systems.analysis import Simulator
+from pydrake.systems.framework import EventStatus
 
 from canal.errors import InputError
 from diagrams.lio_drive import CLOSE_TARGET, GRIPPER_SPEED, OPEN_ANGLE, LioDrive
@@ -14,6 +15,10 @@ PORTS = {
     "q": 6, "v": 6, "gripper_state": 2, "X_BT": 7, "item_poses": 21, "item_bounds": 18, "item_speeds": 3,
     "contact_forces": 4, "penetration": 1,
 }  # fmt: skip
+SPEED = np.deg2rad(95.0)
+"""[rad/s] Of every joint of the arm (SPEC section 6)."""
+RATE = 50
+"""[Hz] Of commands, and of the rig's scenario."""
 
 
 class Rig:
@@ -23,6 +28,7 @@ class Rig:
         scenario = load_scenario(name)
         for item in scenario.items:
             item.kind = "rigid"
+        scenario.control_rate_hz = RATE
         if change is not None:
             change(scenario)
         self.station = LioStation(scenario, seed=seed, q0=q0)
@@ -41,14 +47,18 @@ class Rig:
         self.simulator.AdvanceTo(self.context.get_time() + seconds)
 
     def follow(self, q_of_t, seconds):
-        """Command a motion at 100 Hz, and return the largest lag [rad]."""
-        begin, worst = self.context.get_time(), 0.0
-        for k in range(1, round(100 * seconds) + 1):
-            q, v = q_of_t(k / 100), (q_of_t(k / 100) - q_of_t((k - 1) / 100)) * 100
+        """Command a motion at the control rate; returns the largest lag [rad] and all joint speeds [rad/s]."""
+        begin, worst, speeds = self.context.get_time(), 0.0, []
+        self.simulator.set_monitor(lambda root: (speeds.append(self["v"].copy()), EventStatus.Succeeded())[1])
+        for k in range(1, round(RATE * seconds) + 1):
+            # A command comes with the tick's update, so that the step at the tick itself still follows the last one.
+            self.simulator.AdvanceTo(begin + (k - 1) / RATE + 1e-6)
+            q, v = q_of_t(k / RATE), (q_of_t(k / RATE) - q_of_t((k - 1) / RATE)) * RATE
             self.wanted.GetMutableData().set_value(np.concatenate([q, v]))
-            self.simulator.AdvanceTo(begin + k / 100)
+            self.simulator.AdvanceTo(begin + k / RATE)
             worst = max(worst, np.abs(self["q"] - q).max())
-        return worst
+        self.simulator.clear_monitor()
+        return worst, np.array(speeds)
 
 
 @pytest.fixture(scope="module")
@@ -92,7 +102,30 @@ def test_follows_with_feed_forward():
     """A swing at up to 1.1 rad/s: the lag stays below half a degree."""
     rig = Rig(change=lambda s: s.items.__delitem__(slice(1, None)))
     swing = np.array([0.35, 0.2, -0.2, 0.3, -0.2, 0.35])
-    assert rig.follow(lambda t: START_POSTURE + swing * (1 - np.cos(np.pi * t)) / 2, 1.0) < 0.01
+    lag, _ = rig.follow(lambda t: START_POSTURE + swing * (1 - np.cos(np.pi * t)) / 2, 1.0)
+    assert lag < 0.01
+
+
+def test_a_steady_speed_is_steady():
+    """Between two commands the joints do not swing about the speed that is wanted."""
+    rig = Rig(change=lambda s: s.items.__delitem__(slice(1, None)))
+    speed = np.array([0.5, 0.5, -0.5, 0.5, -0.5, 0.5])
+    _, speeds = rig.follow(lambda t: START_POSTURE + speed * t, 0.6)
+    np.testing.assert_allclose(speeds[-50:], np.tile(speed, (50, 1)), rtol=0.01)
+
+
+@pytest.mark.parametrize("how", ["all start and stop", "shoulder turns back", "elbow turns back"])
+def test_no_joint_exceeds_its_speed_when_full_speed_is_commanded(how):
+    """From rest to full speed and back, or from full speed to the other way, from one command to the next."""
+    rig = Rig(change=lambda s: s.items.__delitem__(slice(1, None)))
+    if how == "all start and stop":
+        directions = np.outer((np.arange(30) > 3) & (np.arange(30) < 15), [1.0, -1, 1, -1, 1, 1])
+    else:
+        joint = 1 if how == "shoulder turns back" else 2
+        directions = np.outer(np.where(np.arange(30) // 10 % 2, 1.0, -1.0), np.eye(6)[joint])
+    ticks = START_POSTURE + SPEED / RATE * np.vstack([np.zeros(6), np.cumsum(directions, axis=0)])
+    _, speeds = rig.follow(lambda t: ticks[round(t * RATE)], 0.6)
+    assert 0.9 * SPEED < np.abs(speeds).max() <= SPEED
 
 
 def test_a_touch_is_felt():
@@ -119,15 +152,17 @@ def test_a_posture_that_cannot_be_is_refused(q0):
 
 
 def test_drive_ramps_the_gripper_and_holds_what_is_not_finite():
-    drive = LioDrive(START_POSTURE)
+    drive = LioDrive(START_POSTURE, period=0.02, time_step=0.004)
     simulator = Simulator(drive)
     context = simulator.get_mutable_context()
     wanted = drive.GetInputPort("desired_state").FixValue(context, np.concatenate([START_POSTURE + 0.1, np.ones(6)]))
     drive.GetInputPort("gripper_command").FixValue(context, [1.0])
+    drive.GetInputPort("lio_state").FixValue(context, np.zeros(16))
     simulator.AdvanceTo(0.105)
     out = drive.GetOutputPort("actuator_state").Eval(context)
-    assert out[:6] == pytest.approx(START_POSTURE + 0.1)
-    assert out[6] == pytest.approx(OPEN_ANGLE - 6 * 0.02 * GRIPPER_SPEED)
+    # 0.015 s before the end of the command's period, on the straight line to it.
+    assert out[:6] == pytest.approx(START_POSTURE + 0.1 - 0.015)
+    assert out[6] == pytest.approx(OPEN_ANGLE - 0.105 * GRIPPER_SPEED)
     wanted.GetMutableData().set_value(np.full(12, np.nan))
     simulator.AdvanceTo(2.0)
     out = drive.GetOutputPort("actuator_state").Eval(context)

@@ -14,6 +14,8 @@ from diagrams.scenario import Robot, load_scenario
 DOWN = np.array([0.0, 0.7071067811865476, 0.0, -0.7071067811865476])
 NEAR = np.array([-1.5, 0.3, 1.2, 0.0, 1.4, 0.0])
 STEP = 0.01
+AFTER = 1e-6
+"""[s] A command comes just after its tick, as the IK's does."""
 SLIP = 3e-3
 
 
@@ -33,6 +35,7 @@ def test_carried_without_slip(name):
     table.model, table.position, table.yaw_deg, scenario.robot = "laundry_table", [0.46, 0.0, 0.0], 0.0, Robot()
     scenario.things, scenario.items = [table], [item]
     item.kind = "rigid"
+    scenario.control_rate_hz = 1 / STEP
     item.start.frame = ""
     item.start.center, item.start.half_widths, item.start.yaw_deg = [0.45, 0.0, 0.30], [0.0, 0.0], [0.0, 0.0]
 
@@ -44,7 +47,7 @@ def test_carried_without_slip(name):
     context = simulator.get_mutable_context()
     wanted = station.GetInputPort("desired_state").FixValue(context, np.concatenate([low, np.zeros(6)]))
     station.GetInputPort("gripper_command").FixValue(context, [1.0])
-    simulator.AdvanceTo(1.2)
+    simulator.AdvanceTo(1.2 + AFTER)
 
     def seen_from_the_hand():
         X_BT = vector_to_pose(station.GetOutputPort("X_BT").Eval(context))
@@ -59,7 +62,7 @@ def test_carried_without_slip(name):
         q = low + share * (high + turn - low)
         wanted.GetMutableData().set_value(np.concatenate([q, (q - last) / STEP]))
         last = q
-        simulator.AdvanceTo(1.2 + k * STEP)
+        simulator.AdvanceTo(1.2 + k * STEP + AFTER)
         slip = max(slip, np.linalg.norm(seen_from_the_hand().translation() - held.translation()))
         depth = max(depth, station.GetOutputPort("penetration").Eval(context)[0])
     bounds = station.GetOutputPort("item_bounds").Eval(context)
