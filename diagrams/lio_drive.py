@@ -29,6 +29,10 @@ that carries momentum, its SAP solver then does not converge. A tenth of a milli
 AT_REST = 1e-9
 """[rad/s] Slower is no motion, and the aim does not follow it from step to step: the SAP solver, with nothing else that
 moves, does not converge when it changes by the rounding of a number."""
+CREEP = 0.02
+"""[rad/s] Up to this a joint presses on something rather than moves, and its drive's aim stays as far ahead as it is."""
+MOVING = ARM + 2
+"""Where the speeds begin in the model's state: two fingers come after the arm."""
 SPEED_SHARE = 0.97
 """Of a joint's speed that its drive goes up to: when all joints start or stop at once, they push each other 1.6 %
 beyond what their drives allow."""
@@ -120,10 +124,8 @@ class LioDrive(LeafSystem):
             v = desired[ARM + k]
             aim = desired[k] - v * left if abs(v) > AT_REST else desired[k]
             ahead = aim - measured[k] + lag * v
-            if ahead > lead:
-                aim -= ahead - lead
-            elif ahead < -lead:
-                aim -= ahead + lead
+            if abs(ahead) > lead and abs(measured[MOVING + k]) > CREEP:
+                aim -= math.copysign(abs(ahead) - lead, ahead)
             aims.append(low if aim < low else high if aim > high else aim)
         grip = min(target - rate * _time_left(time, PERIOD), OPEN_ANGLE - CLEAR_OF_STOPS)
         output.set_value(np.array((*aims, grip, *desired[ARM:], rate)))
