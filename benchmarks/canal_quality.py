@@ -29,8 +29,8 @@ RECORDED = ROOT.parent / "shared" / "demos"
 N_SEEDS = 30
 
 sys.path.insert(0, str(ROOT / "tests" / "canal"))
+from hard_demonstrations import HAND_GUIDED, Hardness, hard_demonstrations  # noqa: E402, F401
 from hard_demonstrations import SHAPES as WAYS  # noqa: E402, F401 (for benchmarks beside this one)
-from hard_demonstrations import Hardness, hard_demonstrations  # noqa: E402, F401
 
 
 class Figure(NamedTuple):

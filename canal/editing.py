@@ -147,6 +147,29 @@ def add_demonstration(canal: CanalSurface, demonstration: Demonstration) -> Cana
     )
 
 
+def with_support_planes(canal: CanalSurface, planes: tuple[SupportPlane, ...]) -> CanalSurface:
+    """The canal refined at these support planes as well as at its own: same disks, but for their normals and frames.
+
+    Raises:
+        InputError: a centre lies beyond a plane.
+    """
+    together = tuple(dict.fromkeys(canal.support_planes + planes))
+    if together == canal.support_planes:
+        return canal
+    x, y, z = canal.x_global.tolist()
+    ball = np.linalg.norm(canal.demonstrations - canal.directrix, axis=2).max(axis=0)
+    refined = build_surface(
+        canal.demonstrations,
+        canal.demonstration_orientations,
+        tangents=canal.tangents,
+        moving_time_s=canal.moving_time_s,
+        options=LearningOptions(x_global=(x, y, z), ellipse=canal.ellipses is not None, support_planes=together),
+        widening=np.maximum(canal.radii - ball, 0.0),
+    )
+    kept = ("directrix", "radii", "orientations", "orientation_sd", "orientation_weights")
+    return refined.with_(**{name: getattr(canal, name) for name in kept})
+
+
 def rebuild(
     canal: CanalSurface,
     positions: np.ndarray,

@@ -163,7 +163,7 @@ class CanalSurface:
         for mx, my, mz, offset in self._planes:  # type: ignore[attr-defined]
             height = mx * cx + my * cy + mz * cz - offset
             drop = -(mx * dx + my * dy + mz * dz)
-            if drop > height:  # along the disk, towards the centre, so that φ stays
+            if drop > max(height, 0.0):  # along the disk, towards the centre, so that φ stays
                 share = max(0.0, height / drop)
                 dx, dy, dz = share * dx, share * dy, share * dz
         return np.array((cx + dx, cy + dy, cz + dz))

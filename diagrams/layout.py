@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -9,9 +10,9 @@ from pydrake.math import RigidTransform, RollPitchYaw
 
 from canal.errors import InputError
 from diagrams.goals import DrumGoal, Goal, MarkGoal
-from diagrams.scenario import Item, Region, Robot, Scenario, Thing
+from diagrams.scenario import Region, Robot, Room, Scenario, Thing
 
-TRIES = 2000
+TRIES, ROUNDS = 200, 100
 LAYOUT_STREAM = 5
 """Sets this random stream apart from others with the same seed."""
 
@@ -37,42 +38,93 @@ def base_pose(robot: Robot) -> RigidTransform:
 def draw_layout(scenario: Scenario, seed: int) -> tuple[list[Spot], list[Spot | None]]:
     """Draw a start for each item, and a mark for each that has a goal; no two nearer than the scenario's spacing.
 
+    Args:
+        scenario: its items, their regions, and the things that regions lie on.
+        seed: of the draw.
+
+    Returns:
+        Starts and marks, in the items' order; None for an item without a goal.
+
     Raises:
         InputError: the regions are too small for the spacing.
     """
     rng = np.random.default_rng((seed, LAYOUT_STREAM))
-    starts: list[Spot] = []
-    marks: list[Spot] = []
-    goals: list[Spot | None] = []
-    for item in scenario.items:
-        region, key = item.start, "start"
-        if item.kind == "soft" and item.soft_start is not None:
-            region, key = item.soft_start, "soft_start"
-        starts.append(_draw(rng, scenario, item, region, starts, key))
-    for item in scenario.items:
-        if item.goal is None:
-            goals.append(None)
-            continue
-        marks.append(_draw(rng, scenario, item, item.goal, marks, "goal"))
-        goals.append(marks[-1])
-    return starts, goals
+    starts = _draw_all(
+        rng,
+        scenario,
+        [
+            (item.name, "soft_start", item.soft_start)
+            if item.kind == "soft" and item.soft_start is not None
+            else (item.name, "start", item.start)
+            for item in scenario.items
+        ],
+    )
+    goals = {i: item.goal for i, item in enumerate(scenario.items) if item.goal is not None}
+    drawn = _draw_all(rng, scenario, [(scenario.items[i].name, "goal", region) for i, region in goals.items()])
+    marks = dict(zip(goals, drawn, strict=True))
+    return starts, [marks.get(i) for i in range(len(scenario.items))]
+
+
+def _draw_all(rng: np.random.Generator, scenario: Scenario, regions: list[tuple[str, str, Region]]) -> list[Spot]:
+    """A spot in each region (item, key, region), all apart; anew where the first leave no place for the last."""
+    crowded = ""
+    for _ in range(ROUNDS):
+        spots: list[Spot] = []
+        for item, key, region in regions:
+            others = list(zip(spots, (r for _, _, r in regions), strict=False))
+            spot = _draw(rng, scenario, region, others)
+            if spot is None:
+                crowded = crowded or f"items.{item}.{key}"
+                break
+            spots.append(spot)
+        else:
+            return spots
+    raise InputError(
+        f"{crowded} leaves no place that is {scenario.item_spacing:g} m from the others and clear of the fingers; "
+        "widen its region, move its center, or lower item_spacing"
+    )
 
 
 def _draw(
-    rng: np.random.Generator, scenario: Scenario, item: Item, region: Region, others: list[Spot], what: str
-) -> Spot:
+    rng: np.random.Generator, scenario: Scenario, region: Region, others: list[tuple[Spot, Region]]
+) -> Spot | None:
     on = next((thing for thing in scenario.things if thing.name == region.frame), Thing())
-    X_WT, spacing = yaw_pose(on.position, np.deg2rad(on.yaw_deg)), scenario.item_spacing
+    X_WT = yaw_pose(on.position, np.deg2rad(on.yaw_deg))
     for _ in range(TRIES):
-        shift = rng.uniform(-1, 1, 2) * region.half_widths
+        shift = _shift(rng, region)
         yaw = np.deg2rad(on.yaw_deg + rng.uniform(region.yaw_deg[0], region.yaw_deg[1]))
         position = X_WT.multiply(np.asarray(region.center, dtype=float) + [*shift, 0.0])
-        if all(np.linalg.norm(position - other.position) >= spacing for other in others):
+        if all(
+            np.linalg.norm(position - other.position) >= scenario.item_spacing
+            and _clear(position - other.position, region.room)
+            and _clear(position - other.position, theirs.room)
+            for other, theirs in others
+        ):
             return Spot(position, float(yaw))
-    raise InputError(
-        f"items.{item.name}.{what} leaves no place that is {spacing:g} m from the others; "
-        "widen half_widths, move its center, or lower item_spacing"
-    )
+    return None
+
+
+def _shift(rng: np.random.Generator, region: Region) -> np.ndarray:
+    """A point of a region, evenly drawn, from its middle [m]. Shape (2,)."""
+    if not region.reach:
+        return rng.uniform(-1, 1, 2) * region.half_widths
+    while True:
+        distance, angle = max(region.reach) * np.sqrt(rng.uniform()), rng.uniform(0, 2 * np.pi)
+        if distance <= reach_at(region.reach, angle):
+            return distance * np.array([np.cos(angle), np.sin(angle)])
+
+
+def reach_at(reach: Sequence[float], angle: np.ndarray | float) -> np.ndarray:
+    """How far a region reaches at an angle [rad] about its middle, [m]: `reach` is given at equal angles."""
+    return np.asarray(np.interp(angle, np.arange(len(reach)) * (2 * np.pi / len(reach)), reach, period=2 * np.pi))
+
+
+def _clear(apart: np.ndarray, room: Room | None) -> bool:
+    """Whether what lies `apart` [m] leaves a thing the room that the fingers need."""
+    if room is None:
+        return True
+    c, s = np.cos(np.deg2rad(room.yaw_deg)), np.sin(np.deg2rad(room.yaw_deg))
+    return bool(abs(c * apart[0] + s * apart[1]) >= room.along or abs(c * apart[1] - s * apart[0]) >= room.across)
 
 
 def make_goals(scenario: Scenario, marks: list[Spot | None], rest_heights: list[float]) -> list[Goal]:

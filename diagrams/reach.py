@@ -36,6 +36,7 @@ class ReachReport:
         etas: ratios of the rings, shape (rings,); each ring stands for an equal part of the disk's area.
         phis: angles of the spokes [rad], shape (spokes,).
         reached: which points count, shape (M, rings, spokes); center_reached: shape (M,).
+        postures: at the points [rad], shape (M, rings, spokes, n).
         position_errors: at the points [m], shape (M, rings, spokes).
         orientation_errors: at the points [rad], shape (M, rings, spokes).
         share: part of each disk's area that is reached, in [0, 1], all disks, shape (N,).
@@ -47,6 +48,7 @@ class ReachReport:
     phis: np.ndarray
     reached: np.ndarray
     center_reached: np.ndarray
+    postures: np.ndarray
     position_errors: np.ndarray
     orientation_errors: np.ndarray
     share: np.ndarray
@@ -101,6 +103,7 @@ def reach_report(
     phis = np.arange(spokes) * (2.0 * math.pi / spokes)
     tolerance = orientation_tolerance(canal)
     errors = np.empty((len(disks), rings, spokes, 2))
+    postures = np.empty((len(disks), rings, spokes, solver.n))
     center_reached = np.empty(len(disks), dtype=bool)
     for row, disk in enumerate(disks.tolist()):
         limit, weight = float(tolerance[disk]), float(canal.orientation_weights[disk])
@@ -111,6 +114,7 @@ def reach_report(
             for ring, eta in enumerate(etas):
                 pose = disk_pose(canal, disk, float(eta), float(phi))
                 q, *errors[row, ring, spoke] = _reach(solver, pose, weight, q, limit)
+                postures[row, ring, spoke] = q
         if progress is not None:
             progress(row + 1, len(disks))
     reached = _counts(errors, tolerance[disks, None, None])
@@ -120,6 +124,7 @@ def reach_report(
         phis=phis,
         reached=reached,
         center_reached=center_reached,
+        postures=postures,
         position_errors=errors[..., 0],
         orientation_errors=errors[..., 1],
         share=np.interp(np.arange(n_disks), disks, reached.mean(axis=(1, 2))),

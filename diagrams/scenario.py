@@ -70,8 +70,20 @@ HalfWidth = Annotated[float, Field(ge=0, le=10)]
 
 
 @options()
+class Room:
+    """What open fingers take about a thing: the middle of no other thing lies in this rectangle around it."""
+
+    yaw_deg: Angle = 0.0
+    """Direction in which the fingers open, about z of W."""
+    along: HalfWidth = 0.145
+    """Half its extent in that direction [m]: open fingers reach 0.094, another thing 0.042, and a hand errs by 8 mm."""
+    across: HalfWidth = 0.065
+    """Half its extent across it [m]: fingers are 0.03 wide. More, the more the gripper leans."""
+
+
+@options()
 class Region:
-    """Where a thing may lie: a rectangle on a horizontal surface."""
+    """Where a thing may lie, on a horizontal surface: a rectangle, or what lies within reach of a point."""
 
     frame: str = ""
     """The thing in whose frame the rectangle is given, so that it goes where the thing goes; empty: in W."""
@@ -81,8 +93,13 @@ class Region:
         default_factory=lambda: [0.0, 0.0]
     )
     """Half its extent along x and y of the frame [m]."""
+    reach: list[HalfWidth] = field(default_factory=list)
+    """Instead of half widths: how far it reaches from the middle [m], at equal angles from x of the frame on; between
+    them linear. One number is a disk."""
     yaw_deg: Annotated[Vector2, AfterValidator(_ordered)] = field(default_factory=lambda: [0.0, 0.0])
     """Least and largest turn about z."""
+    room: Room | None = None
+    """What the fingers need around the thing; None: `item_spacing` alone."""
 
 
 @options()

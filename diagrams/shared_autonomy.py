@@ -19,6 +19,7 @@ from diagrams.canal_view import CanalView
 from diagrams.clear_arm import make_lio_solver
 from diagrams.force_alarm import ForceAlarm
 from diagrams.ik_system import OrientationWeightedIk
+from diagrams.joint_pace import at_joint_pace, unhurried
 from diagrams.joystick import JoystickSelector, RecordedJoystick
 from diagrams.joystick_recording import JoystickRecording
 from diagrams.lio_station import START_POSTURE, LioStation
@@ -48,6 +49,8 @@ class SharedAutonomy:
     start: StartPosture
     holds: tuple[ZeroOrderHold, ...]
     video: VideoRecorder | None = None
+    notices: tuple[str, ...] = ()
+    """What a person should know before the start."""
 
     def take_first_measurements(self, root: Context) -> None:
         """Sample all measurements before the first tick, so that none of them starts as zeros."""
@@ -92,11 +95,12 @@ def build_shared_autonomy(
     builder = DiagramBuilder()
 
     solver = make_lio_solver(scenario)
-    start = find_start_posture(solver, canal, preferred=START_POSTURE)
+    start = find_start_posture(solver, unhurried(canal), preferred=START_POSTURE)
+    navigation, slower = at_joint_pace(solver, canal, start, scenario.navigation)
     station = LioStation.AddToBuilder(
         builder=builder, scenario=scenario, seed=seed, q0=start.q, filmed=video is not None
     )
-    navigator = CanalNavigator.AddToBuilder(builder=builder, canal=canal, options=scenario.navigation, period=period)
+    navigator = CanalNavigator.AddToBuilder(builder=builder, canal=canal, options=navigation, period=period)
     ik = builder.AddNamedSystem("ik", OrientationWeightedIk(solver, q_start=start.q, period=period))
     monitor = Monitor.AddToBuilder(
         builder=builder,
@@ -134,7 +138,7 @@ def build_shared_autonomy(
             goals=station.goals,
             X_WB=station.X_WB,
             options=scenario.operator,
-            navigation=scenario.navigation,
+            navigation=navigation,
             seed=seed,
         )
         for name in ("item_poses", "item_bounds", "X_BT"):
@@ -192,7 +196,7 @@ def build_shared_autonomy(
             canal=canal,
             navigation_state=navigator.GetOutputPort("navigation_state"),
             X_BT=measured["X_BT"],
-            options=scenario.navigation,
+            options=navigation,
             X_WB=station.X_WB,
             disk_colors=colors,
             name=f"canal_{name}",
@@ -217,7 +221,19 @@ def build_shared_autonomy(
     recorder = None if video is None else VideoRecorder.AddToBuilder(builder=builder, station=station, path=video)
     diagram = builder.Build()
     diagram.set_name("shared_autonomy")
-    return SharedAutonomy(diagram, station, navigator, ik, monitor, selector, log, start, tuple(holds), recorder)
+    return SharedAutonomy(
+        diagram,
+        station,
+        navigator,
+        ik,
+        monitor,
+        selector,
+        log,
+        start,
+        tuple(holds),
+        recorder,
+        (slower,) if slower else (),
+    )
 
 
 def _show(builder: DiagramBuilder, station: LioStation, meshcat: Meshcat, name: str) -> None:

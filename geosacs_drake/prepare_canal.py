@@ -1,4 +1,4 @@
-"""The canal of a run: loaded, or learned from demonstrations, and bent to where the task is now."""
+"""What a run is built from: its scenario, and its canal, loaded or learned, bent to where the task is now."""
 
 from __future__ import annotations
 
@@ -10,18 +10,51 @@ import numpy as np
 from scipy.spatial.transform import Rotation
 
 from canal.demonstration import load_demonstration
+from canal.editing import with_support_planes
 from canal.learning import learn_canal
 from canal.refinement import SupportPlane
 from canal.retargeting import retarget
 from canal.surface import CanalSurface
+from diagrams.clear_arm import make_lio_solver
+from diagrams.fitted_scene import fit_scene
+from diagrams.leads_to import check_leads_to_things
 from diagrams.scenario import Retarget, Scenario
 from geosacs_drake.options import RunOptions
 from models import MODELS
 
 
+def prepare_task(scenario: Scenario, options: RunOptions) -> tuple[Scenario, CanalSurface]:
+    """The canal of a run, and the scenario that it leads through; what a person should know goes to stderr.
+
+    A relocation by somebody's own canal, without a scenario, gets a scene that is fitted to it.
+
+    Args:
+        scenario: the task's own, or the one that the options name.
+        options: of the run.
+
+    Raises:
+        InputError: a file cannot be used, or the canal does not lead to the scenario's things.
+    """
+    if (options.canal or options.demos) and not options.scenario and scenario.task == "relocation":
+        template = replace(scenario, support_planes=[], retarget=Retarget())
+        fitted = fit_scene(prepare_canal(template, options), template, make_lio_solver(template))
+        for line in fitted.lines:
+            print(line, file=sys.stderr)
+        return fitted.scenario, fitted.canal
+    canal = prepare_canal(scenario, options)
+    check_leads_to_things(scenario, canal, options.seed)
+    return scenario, canal
+
+
 def prepare_canal(scenario: Scenario, options: RunOptions) -> CanalSurface:
-    """The canal that the options or the scenario name: loaded, or learned; moved to where the task is now."""
-    planes = tuple(scenario.support_planes)
+    """The canal that the options or the scenario name: loaded, or learned; moved to where the task is now.
+
+    It is refined at the scenario's support planes, a loaded one also at its own.
+
+    Raises:
+        InputError: a file cannot be used, or the canal passes beyond a support plane.
+    """
+    planes = scenario.learning.support_planes + tuple(scenario.support_planes)
     canal = _load_or_learn(scenario, options, planes)
     if scenario.retarget != Retarget():
         to = scenario.retarget
@@ -43,12 +76,15 @@ def _moved(canal: CanalSurface, disk: int, pose: list[float], yaw_deg: float) ->
 
 
 def _load_or_learn(scenario: Scenario, options: RunOptions, planes: tuple[SupportPlane, ...]) -> CanalSurface:
-    if options.canal is not None:
-        return CanalSurface.load(options.canal)
-    if not options.demos and scenario.canal is not None:
-        return CanalSurface.load(scenario.resolve(scenario.canal, MODELS / "demonstrations"))
-    paths: list[Path] = list(options.demos) or [
+    path = options.canal
+    if path is None and not options.demos and scenario.canal is not None:
+        path = scenario.resolve(scenario.canal, MODELS / "demonstrations")
+    # Where the task has moved, the planes are where it is now; the canal is learned where it was shown.
+    planes = planes if scenario.retarget == Retarget() else ()
+    if path is not None:
+        return with_support_planes(CanalSurface.load(path), planes)
+    demonstrations: list[Path] = list(options.demos) or [
         scenario.resolve(name, MODELS / "demonstrations") for name in scenario.demonstrations
     ]
-    learning = replace(scenario.learning, support_planes=scenario.learning.support_planes + planes)
-    return learn_canal([load_demonstration(path) for path in paths], learning)
+    learning = replace(scenario.learning, support_planes=planes)
+    return learn_canal([load_demonstration(path) for path in demonstrations], learning)

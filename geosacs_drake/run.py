@@ -22,7 +22,7 @@ from diagrams.shared_autonomy import build_shared_autonomy
 from geosacs_drake.command_line import ExitStatus, end, parse_options, status_of
 from geosacs_drake.interrupts import Interrupts, Phase
 from geosacs_drake.options import PEOPLE, RunOptions
-from geosacs_drake.prepare_canal import prepare_canal
+from geosacs_drake.prepare_canal import prepare_task
 from geosacs_drake.run_files import check_run_files, finish
 from geosacs_drake.simulate import Progress, simulate
 
@@ -56,7 +56,7 @@ def run(options: RunOptions, task: str, prog: str) -> ExitStatus:
         if options.items is not None:
             scenario = with_items(scenario, options.items)
         check_run_files(options, scenario)
-        canal = prepare_canal(scenario, options)
+        scenario, canal = prepare_task(scenario, options)
         page = None if options.headless else start_meshcat(port=options.port, X_WB=base_pose(scenario.robot))
         # From here on a browser may be connected, for which Meshcat's destructor would wait.
         status = status_of(lambda: _run(options, scenario, canal, page, interrupts, prog), prog)
@@ -86,6 +86,8 @@ def _run(
         video=options.video,
         say=tell,
     )
+    for notice in system.notices:
+        print(notice, file=sys.stderr, flush=True)
     if page is not None:
         steer = f" and steer at {page.web_url()}\n{CONTROLS}" if operator == "person" else f" at {page.web_url()}"
         print(f"watch{steer}", flush=True)

@@ -157,6 +157,22 @@ def table(name: str, width: float, depth: float, height: float) -> None:
     write_model(HERE / f"{name}.sdf", name, [link], SCRIPT)
 
 
+BOARD = (0.48, 0.60, 0.03)
+"""Of the table of any height [m]."""
+
+
+def table_any_height(name: str = "table_any_height") -> None:
+    """A table for any height: origin in the middle of its top, and legs that are seen down to the floor and beyond."""
+    link = Link("table")
+    width, depth, thick = BOARD
+    link.solid(box(BOARD), WOOD, OAK, (0, 0, -thick / 2))
+    for sx in (-1, 1):
+        for sy in (-1, 1):
+            at = (sx * (width / 2 - 0.05), sy * (depth / 2 - 0.05), -thick - 0.5)
+            link.visual(box((0.045, 0.045, 1.0)), LEGS, at)
+    write_model(HERE / f"{name}.sdf", name, [link], SCRIPT)
+
+
 def floor(name: str = "floor") -> None:
     """A stretch of floor; a box, since deformables do not touch half-spaces."""
     link = Link("floor")
@@ -174,6 +190,7 @@ def main() -> None:
     basket("basket_wide", x=0.44)
     table("laundry_table", width=0.46, depth=0.70, height=0.30)
     table("table", width=0.56, depth=0.66, height=0.40)
+    table_any_height()
 
 
 if __name__ == "__main__":

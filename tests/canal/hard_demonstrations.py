@@ -11,8 +11,10 @@ from scipy.ndimage import gaussian_filter1d
 from scipy.spatial.transform import Rotation
 
 from canal.demonstration import Demonstration
+from models.make_demonstrations import orientation as gripper_towards
 
 RATE_HZ = 20.0
+LEVEL = np.radians(35.0)  # hands that are guided part this much out of the horizontal at most
 
 
 @dataclass(frozen=True)
@@ -30,9 +32,12 @@ class Hardness:
     pinch: float = 0.009  # [m] distance half-way
     disagreement: float = 30.0  # [°] between the orientations
     sign_flips: int = 2
+    hand_guided: bool = False  # as a person leads the Lio by its hand, see `_hand_guided`
 
 
 EASY = Hardness(False, 0.0, 0, 0.0, 0.0, 0, False, 0.1, 0.02, 5.0, 0)
+
+HAND_GUIDED = Hardness(hand_guided=True)
 
 SHAPES = ("pick_and_place", "u_turn", "straight", "loop", "hairpin")
 
@@ -85,6 +90,8 @@ def hard_demonstrations(
     nominal = _nominal(shape, rng)
     middle = rng.uniform(0.4, 0.6)
     phase = rng.uniform(0, 2 * np.pi)
+    if h.hand_guided:
+        phase = LEVEL * (phase / np.pi - 1)
     across = _across(nominal)
     first = Rotation.random(random_state=np.random.RandomState(seed))
     last = Rotation.from_rotvec(rng.normal(size=3) * 0.6) * first
@@ -97,18 +104,52 @@ def hard_demonstrations(
         u = _progress(rng, h)
         v = np.clip(u, 0, 1)
         half = 0.5 * (h.pinch + (h.spread - h.pinch) * np.abs((v - middle) / max(middle, 1 - middle)) ** 1.5)
-        position = nominal(v) + half[:, None] * (np.cos(angle) * across[0] + np.sin(angle) * across[1])
+        middle_of_all = _within_reach(nominal(v)) if h.hand_guided else nominal(v)
+        position = middle_of_all + half[:, None] * (np.cos(angle) * across[0] + np.sin(angle) * across[1])
         position += _tremor(rng, u, h.tremor)
         if h.locked_axis:
             _lock(rng, position)
         position += rng.normal(size=position.shape) * h.noise
         own = Rotation.from_rotvec(np.radians(0.5 * h.disagreement) * np.cos(angle) * lean)
         turned = first * Rotation.from_rotvec(np.outer(v, (first.inv() * last).as_rotvec()))
+        if h.hand_guided:
+            turned = _hand_guided(middle_of_all, np.random.default_rng([seed, 1]))
         orientation = (turned * own).as_quat(scalar_first=True)
         orientation += rng.normal(size=orientation.shape) * 0.1 * min(h.noise, 0.001)
         position, orientation = _record(rng, position, orientation, h)
         demonstrations.append(Demonstration(position, orientation, name=f"{shape} {seed}.{k}"))
     return demonstrations
+
+
+def _lift(path: np.ndarray) -> np.ndarray:
+    """How far each point of a path (N, 3) is carried up, from 0 to 1. Shape (N,)."""
+    z = path[:, 2]
+    return (z - z.min()) / np.ptp(z)
+
+
+def _within_reach(path: np.ndarray) -> np.ndarray:
+    """A path (N, 3) moved to where the Lio follows it with its gripper bent down. Shape (N, 3).
+
+    Ends nearer to its base, home 0.33 to 0.45 m before it, carried no higher than 0.83 m: beyond that the forearm,
+    0.3 m long, and the hand, 0.42 m, do not fit in between.
+    """
+    x, y, z = path.T
+    lift = _lift(path)
+    return np.column_stack(
+        [(1 - lift) * 0.75 * x + lift * (0.24 + 0.375 * x), y, np.where(z > 0.55, 0.55 + 0.7 * (z - 0.55), z)]
+    )
+
+
+def _hand_guided(path: np.ndarray, rng: np.random.Generator) -> Rotation:
+    """The gripper as a person leads it along a path (N, 3): away from the base, down to what it grips, level between.
+
+    At the ends it leans by 10 to 22° off straight down, as in recordings, and it is up to 15° askew.
+    """
+    askew, pitch = rng.uniform(-15, 15, 2), rng.uniform(68, 80, 2)
+    along = np.linspace(0, 1, len(path))
+    heading = np.degrees(np.arctan2(path[:, 1], path[:, 0])) + askew[0] + (askew[1] - askew[0]) * along
+    ends = pitch[0] + (pitch[1] - pitch[0]) * along
+    return gripper_towards(heading, ends + (48 - ends) * _lift(path) ** 1.5)
 
 
 def _across(nominal) -> np.ndarray:

@@ -7,8 +7,8 @@ import pytest
 import yaml
 
 from canal.errors import InputError
-from diagrams.layout import draw_layout, yaw_pose
-from diagrams.scenario import Contact, load_scenario, shipped_scenarios, with_items
+from diagrams.layout import draw_layout, reach_at, yaw_pose
+from diagrams.scenario import Contact, Region, Room, load_scenario, shipped_scenarios, with_items
 from models import SCENARIOS
 
 NAMED = [
@@ -37,6 +37,40 @@ def test_shipped_ones_load_and_leave_room(name):
             at = np.array([s.position for s in spots])
             gaps = [np.linalg.norm(a - b) for i, a in enumerate(at) for b in at[i + 1 :]]
             assert min(gaps, default=1.0) >= scenario.item_spacing
+
+
+def test_starts_and_marks_of_the_relocation_vary_over_the_disks():
+    scenario = load_scenario("relocation")
+    layouts = [draw_layout(scenario, seed) for seed in range(60)]
+    for end, y in ((0, -0.455), (1, 0.455)):
+        away = np.array([[spot.position[:2] - (0.235, y) for spot in layout[end]] for layout in layouts])
+        assert np.linalg.norm(away, axis=2).max() <= 0.12
+        for of_item in away.transpose(1, 0, 2):
+            assert np.ptp(of_item, axis=0).min() > 0.19
+
+
+def test_a_region_reaches_as_far_as_it_says_in_each_direction():
+    scenario = load_scenario("relocation")
+    scenario.items = scenario.items[:1]
+    scenario.items[0].start = Region(center=[1.0, 2.0, 0.4], reach=[0.3, 0.1, 0.2, 0.1])
+    at = np.array([draw_layout(scenario, seed)[0][0].position for seed in range(400)]) - [1.0, 2.0, 0.4]
+    distance, angle = np.hypot(at[:, 0], at[:, 1]), np.arctan2(at[:, 1], at[:, 0])
+    assert np.all(distance <= reach_at([0.3, 0.1, 0.2, 0.1], angle))
+    assert at[:, 0].max() > 0.2
+    assert -0.2 < at[:, 0].min() < -0.12
+    assert np.abs(at[:, 1]).max() < 0.15
+    assert np.all(at[:, 2] == 0.0)
+
+
+def test_nothing_lies_where_fingers_open():
+    room = Room(yaw_deg=90.0, along=0.2, across=0.05)
+    scenario = load_scenario("relocation")
+    for item in scenario.items:
+        item.start = Region(reach=[0.25], room=room)
+    for seed in range(30):
+        at = np.array([spot.position for spot in draw_layout(scenario, seed)[0]])
+        apart = np.abs(at[:, None] - at[None])[np.triu_indices(3, 1)]
+        assert np.all((apart[:, 1] >= 0.2) | (apart[:, 0] >= 0.05))
 
 
 def test_layout_is_the_seeds():

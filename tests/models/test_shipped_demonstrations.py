@@ -7,9 +7,9 @@ from scipy.spatial.transform import Rotation
 from canal.demonstration import load_demonstration
 from diagrams.scenario import load_scenario
 from models import MODELS
-from models.make_demonstrations import HANDS, LAUNDRY, RELOCATION, demonstrate
+from models.make_demonstrations import HANDS, TASKS, demonstrate
 
-CASES = [(task, k) for task in (LAUNDRY, RELOCATION) for k in (1, 2)]
+CASES = [(task, k) for task in TASKS for k in (1, 2)]
 
 
 @pytest.fixture(params=CASES, ids=lambda case: f"{case[0].name}_{case[1]}")
@@ -35,7 +35,7 @@ def test_imperfect_as_a_hand(case):
     assert np.ptp(position[-40:], axis=0).max() < 3e-3  # and at the end
 
 
-@pytest.mark.parametrize("task", [LAUNDRY, RELOCATION], ids=lambda t: t.name)
+@pytest.mark.parametrize("task", TASKS, ids=lambda t: t.name)
 def test_hands_part_at_pick_and_meet_on_the_way(task):
     one, two = (load_demonstration(MODELS / "demonstrations" / f"{task.name}_{k}.npz") for k in (1, 2))
     assert np.linalg.norm(one.position[0] - two.position[0]) == pytest.approx(0.28, abs=0.02)
