@@ -14,6 +14,7 @@ from canal.demonstration import Demonstration
 from canal.errors import InputError
 from canal.learning import N_POINTS, build_surface, disk_count, unit_tangents
 from canal.learning_options import LearningOptions
+from canal.refinement import SupportPlane
 from canal.splines import arc_length, fit_spline, knots_every, rotation_curve, slerp, uniform_in_arc
 from canal.surface import CanalSurface
 from canal.trimming import trim
@@ -156,17 +157,17 @@ def with_support_planes(canal: CanalSurface, planes: tuple[SupportPlane, ...]) -
     together = tuple(dict.fromkeys(canal.support_planes + planes))
     if together == canal.support_planes:
         return canal
-    x, y, z = canal.x_global.tolist()
     ball = np.linalg.norm(canal.demonstrations - canal.directrix, axis=2).max(axis=0)
+    learned = replace(own_options(canal), support_planes=together)
     refined = build_surface(
         canal.demonstrations,
         canal.demonstration_orientations,
         tangents=canal.tangents,
         moving_time_s=canal.moving_time_s,
-        options=LearningOptions(x_global=(x, y, z), ellipse=canal.ellipses is not None, support_planes=together),
-        widening=np.maximum(canal.radii - ball, 0.0),
+        options=learned,
+        widening=np.maximum(canal.radii - ball - learned.margin, 0.0),
     )
-    kept = ("directrix", "radii", "orientations", "orientation_sd", "orientation_weights")
+    kept = ("directrix", "radii", "orientations", "orientation_sd", "orientation_weights", "options")
     return refined.with_(**{name: getattr(canal, name) for name in kept})
 
 
