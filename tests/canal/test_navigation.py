@@ -5,6 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from canals import pinched_canal
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -13,6 +14,7 @@ from canal.errors import InputError
 from canal.learning import learn_canal
 from canal.navigation import (
     FIELD_NAMES,
+    Ignored,
     Leg,
     NavigationOptions,
     NavigationState,
@@ -196,6 +198,92 @@ def test_reversal_keeps_disks_frames_and_mapping(canal, started):
     assert (there.eta, there.phi) == (back.eta, back.phi)
 
 
+def test_start_while_travelling_pauses_on_the_disk_and_again_goes_on(canal, started):
+    state = run(canal, started, REST, 2.0)
+    paused = run(canal, step(canal, state, START, 0.01), REST, 3.0)
+    assert paused.disk == state.disk
+    assert paused.paused
+    corrected = run(canal, paused, stick(1, 0), 0.3)
+    assert corrected.eta > 0.1, "corrections work"
+    gripped = run(canal, step(canal, corrected, GRIPPER, 0.01), REST, 1.0)
+    assert gripped.gripper_closed, "so does the gripper"
+    reversed_ = run(canal, step(canal, gripped, REVERSE, 0.01), REST, 1.0)
+    assert Leg(int(reversed_.leg)) is Leg.PICK_TO_HOME, "and reverse"
+    assert reversed_.disk == state.disk
+    on = run(canal, step(canal, reversed_, START, 0.01), REST, 0.5)
+    assert on.disk > state.disk
+    assert (on.ignored, on.paused) == (0, 0)
+
+
+def test_stop_freezes_everything_until_start_and_tells_why(canal, started):
+    state = run(canal, started, REST, 2.0)
+    stopped = step(canal, state, STOP, 0.01)
+    frozen = replace(stopped, held_stop=0.0)
+    for count, joystick in enumerate((GRIPPER, REVERSE, stick(1, 0)), 1):
+        frozen = run(canal, run(canal, frozen, joystick, 0.2), REST, 0.2)
+        assert (frozen.disk, frozen.eta, frozen.leg, frozen.gripper_closed) == (state.disk, 0, state.leg, 0)
+        assert (frozen.ignored, frozen.ignored_why) == (count, Ignored.STOPPED)
+    again = step(canal, frozen, STOP, 0.01)
+    assert (again.ignored, again.ignored_why) == (4, Ignored.ALREADY_STOPPED)
+    on = run(canal, step(canal, run(canal, again, REST, 0.1), START, 0.01), REST, 0.5)
+    assert on.disk < state.disk
+    assert not on.paused
+
+
+def test_stop_wins_over_start(canal, started):
+    state = run(canal, started, REST, 1.0)
+    both = step(canal, state, START + STOP, 0.01)
+    assert not both.running
+    held = step(canal, step(canal, both, STOP, 0.01), START + STOP, 0.01)
+    assert not held.running
+    assert held.ignored_why == Ignored.STOP_HELD
+
+
+def test_a_pause_ends_with_a_stop(canal, started):
+    paused = step(canal, run(canal, started, REST, 1.0), START, 0.01)
+    stopped = step(canal, step(canal, paused, REST, 0.01), STOP, 0.01)
+    on = step(canal, step(canal, stopped, REST, 0.01), START, 0.01)
+    assert run(canal, on, REST, 0.5).disk < paused.disk
+
+
+def test_start_while_waiting_is_told_what_goes_on(canal, started):
+    waiting = run(canal, started, REST, canal.moving_time_s)
+    assert waiting.waiting
+    state = run(canal, step(canal, waiting, START, 0.01), REST, 1.0)
+    assert (state.disk, state.paused) == (0, 0)
+    assert (state.ignored, state.ignored_why) == (1, Ignored.WAITING)
+
+
+@pytest.mark.parametrize("half_width", [0.1, 0.4])
+@pytest.mark.parametrize("before_home", [0.05, 0.5, 3.0, 20.0])
+@pytest.mark.parametrize("options", [NavigationOptions(), NavigationOptions(decay="paper", decay_lambda=5.0)])
+def test_close_to_home_nothing_jumps(half_width, before_home, options):
+    canal = pinched_canal(half_width)
+    speed = disks_per_second(canal, options) * float(np.diff(canal.arc).max())
+    disk = canal.home_disk - before_home
+    outward = replace(initial_state(canal), disk=disk, eta=1.0, phi=0.3, anchor_eta=1.0, running=1.0)
+    corrected = replace(outward, leg=float(Leg.PICK_TO_HOME), anchor_disk=disk, correcting=1.0)
+    for state, joystick in ((outward, REVERSE), (corrected, REST)):
+        for _ in range(200):
+            after = step(canal, state, joystick, 0.02, options=options)
+            taken = abs(after.eta - state.eta) * canal.radius(after.disk)
+            assert taken <= speed * 0.02 * (1 + 1e-6)
+            state, joystick = after, REST
+
+
+@pytest.mark.parametrize("speed_scale", [1e2, 1e6, 1e12])
+def test_a_step_does_bounded_work_at_any_speed(canal, started, speed_scale):
+    options = NavigationOptions(wait_at_ends=False)
+    fast = canal.with_(moving_time_s=canal.moving_time_s / speed_scale)
+    state = step(fast, started, REST, 0.1, options=options)
+    assert 0 <= state.disk <= canal.n_disks - 1
+    assert 0 <= state.eta <= 1
+    # Whole cycles lead back to where they began.
+    left = math.fmod(disks_per_second(fast, options) * 0.1, 2 * (canal.n_disks - 1))
+    slow = step(canal, started, REST, left / disks_per_second(canal, options), options=options)
+    assert (state.disk, state.leg) == (pytest.approx(slow.disk, abs=1e-3), slow.leg)
+
+
 def test_what_is_not_finite_is_a_centred_stick(canal, started):
     joystick = np.array([np.nan, np.inf, np.nan, 0, 0, np.nan])
     state = step(canal, started, joystick, 0.05)
@@ -224,7 +312,9 @@ def test_speed_scale(canal):
     assert leg_end(canal, Leg.HOME_TO_PLACE) == canal.n_disks - 1
 
 
-@pytest.mark.parametrize("wrong", [{"speed_scale": 0}, {"delta": math.nan}, {"eta_f": 2}, {"decay": "cubic"}])
+@pytest.mark.parametrize(
+    "wrong", [{"speed_scale": 0}, {"speed_scale": 1e12}, {"delta": math.nan}, {"eta_f": 2}, {"decay": "cubic"}]
+)
 def test_wrong_options_are_refused(wrong):
     with pytest.raises(InputError, match=next(iter(wrong))):
         NavigationOptions(**wrong)
