@@ -30,7 +30,7 @@ AT_REST = 1e-9
 """[rad/s] Slower is no motion, and the aim does not follow it from step to step: the SAP solver, with nothing else that
 moves, does not converge when it changes by the rounding of a number."""
 CREEP = 0.02
-"""[rad/s] Up to this a joint presses on something rather than moves, and its drive's aim stays as far ahead as it is."""
+"""[rad/s] Up to this a joint presses on something rather than moves, and its drive aims as far ahead as it did."""
 MOVING = ARM + 2
 """Where the speeds begin in the model's state: two fingers come after the arm."""
 SPEED_SHARE = 0.97
