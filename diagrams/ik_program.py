@@ -14,8 +14,9 @@ import numpy as np
 from pydrake.solvers import Binding, ChooseBestSolver, ClarabelSolver, MakeSolver, MathematicalProgram, SolverOptions
 from scipy.linalg.lapack import dposv
 
-# Clarabel's default of 1e-8 is absolute, and more than the whole cost of an ordinary tick.
-_TOLERANCE = 1e-11
+# Clarabel's default of 1e-8 is absolute, and more than the whole cost of an ordinary tick. Feasibility at 1e-11 was
+# more than it can do on one program in fifty.
+_TOLERANCES = {"tol_gap_abs": 1e-12, "tol_gap_rel": 1e-12, "tol_feas": 1e-9}
 # An interior point stops this short of an active bound at most [rad]; then it is put onto it.
 _AT_BOUND = 1e-7
 
@@ -65,8 +66,8 @@ class StepProgram:
         self._opened = self.extended = False
         self._clarabel = self._solver = ClarabelSolver()
         self._options = SolverOptions()
-        for name in ("tol_gap_abs", "tol_gap_rel", "tol_feas"):
-            self._options.SetOption(ClarabelSolver.id(), name, _TOLERANCE)
+        for name, value in _TOLERANCES.items():
+            self._options.SetOption(ClarabelSolver.id(), name, value)
         self.solver_calls = 0
 
     @property

@@ -60,7 +60,7 @@ class IkResult(NamedTuple):
 
 
 class IkSolver:
-    """Newton's method on the exact objective inside the box that one tick allows.
+    """Gauss-Newton's method inside the box that one tick allows, each step one quadratic program of Drake's.
 
     The plant is for kinematics only and needs neither actuators nor gravity. Every call starts from its arguments
     alone: there is no state but buffers.
