@@ -9,10 +9,12 @@ command that repeats it; the exit status is 1 when there was one.
 from __future__ import annotations
 
 import argparse
+import faulthandler
 import importlib
 import json
 import os
 import queue
+import signal
 import subprocess
 import sys
 import threading
@@ -32,7 +34,10 @@ PARTS = {
     "canal": ("benchmarks.fuzz_canals", 120.0, 200),
     "scenario": ("benchmarks.fuzz_scenarios", 60.0, 200),
 }
-"""By name: the module whose `case(seed)` tries one, the seconds after which a case hangs, the cases of a process."""
+"""By name: the module whose `case(seed)` tries one, the seconds of processor time after which a case hangs, and the
+cases of a process."""
+ASLEEP = 10.0
+"""Times those seconds, by the clock, after which a case that waits for something is taken to hang."""
 TURN_S = 60.0
 """With --part all each part gets so many seconds, then the next."""
 STARTING_S = 60.0
@@ -157,7 +162,7 @@ def fuzz(parts: list[str], seed: int, seconds: float, output: Path) -> dict[str,
 
 def stream(part: str, seed: int, until: float) -> Iterator[Outcome]:
     """Cases from `seed` on in another process, until the clock says `until`; one that hangs ends that process."""
-    patience = PARTS[part][1]
+    patience = ASLEEP * PARTS[part][1]
     while time.monotonic() < until:
         command = [sys.executable, "-m", "benchmarks.fuzz", "--child", "--part", part, "--seed", str(seed)]
         environment = os.environ | ONE_THREAD
@@ -181,7 +186,8 @@ def stream(part: str, seed: int, until: float) -> Iterator[Outcome]:
                     process.kill()
                     process.wait()
                     readers[1].join(5.0)
-                    how = "hung" if outcome.seconds >= patience else f"took the process down ({process.returncode})"
+                    hung = outcome.seconds >= patience or process.returncode == -signal.SIGPROF
+                    how = "hung" if hung else f"took the process down ({process.returncode})"
                     outcome.words = how + "\n" + "".join(errors[-30:])
                 yield outcome
                 seed += 1
@@ -215,7 +221,10 @@ def _read_lines(pipe: Iterable[str], lines: queue.Queue[str | None]) -> None:
 
 
 def _child(part: str, seed: int, cases: int) -> int:
+    # What hangs is ended in processor time, since others may use the machine; it says first where it was.
+    faulthandler.register(signal.SIGPROF, chain=True)
     for k in range(cases):
+        signal.setitimer(signal.ITIMER_PROF, PARTS[part][1])
         print(json.dumps(tried(part, seed + k).__dict__), flush=True)
     print("through", flush=True)
     return 0

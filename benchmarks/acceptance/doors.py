@@ -44,7 +44,12 @@ def _judged(cases: dict[str, tuple[object, ...]], folder: Path) -> Figures:
         if why := _refused(ended, folder, before):
             bad[name] = why
     print("not refused as they must be:", bad)
-    return {"all refused": float(not bad), "not refused": len(bad), "tried": len(cases), "slowest": slowest}
+    return {
+        "all refused": float(bool(cases) and not bad),
+        "not refused": len(bad),
+        "tried": len(cases),
+        "slowest": slowest,
+    }
 
 
 def shared_demonstrations() -> Figures:

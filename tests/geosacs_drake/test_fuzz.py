@@ -59,7 +59,7 @@ def process(tmp_path, monkeypatch):
         monkeypatch.setattr(sys, "executable", str(script))
 
     monkeypatch.setattr(fuzz, "STARTING_S", 1.0)
-    monkeypatch.setitem(fuzz.PARTS, "canal", ("nothing", 1.0, 1))
+    monkeypatch.setitem(fuzz.PARTS, "canal", ("nothing", 0.1, 1))
     return make
 
 
