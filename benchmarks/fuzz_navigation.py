@@ -74,16 +74,14 @@ class Hand:
     def contact(self) -> dict[str, Any]:
         """Force and alarm of this step, as `step` takes them."""
         rng = self._rng
-        if self._now(0.3 if not self._alarm else 1.5):
+        if self._now(0.3 if not self._alarm else 1.0):
             self._alarm = 0.0 if self._alarm else float(rng.uniform(151, 600))
+            # From the net force of one contact to that of a wedged hand, none.
             self._force = rng.normal(size=3)
-            self._force *= self._alarm / np.linalg.norm(self._force)
-        return contact(self._alarm, self._force)
-
-
-def contact(alarm: float, force: np.ndarray) -> dict[str, Any]:
-    """An alarm of so many newtons, as `step` takes it."""
-    return {"alarm": alarm > 0}
+            self._force *= self._alarm * rng.choice([1.0, 0.6, 0.2, 0.0]) / np.linalg.norm(self._force)
+            if rng.random() < 0.02:
+                self._force[rng.integers(3)] = np.nan
+        return {"alarm": self._alarm, "force": self._force.tolist()}
 
 
 def case(seed: int) -> str:
@@ -105,7 +103,8 @@ def case(seed: int) -> str:
         except AssertionError as error:
             raise AssertionError(f"step {k}, dt {dt}, {joystick}, {contacts}, {options}\n{state}\n{after}") from error
         state = after
-    assert_not_stuck(canal, state, dt, options)
+    assert_not_stuck(canal, state, dt, options, {})
+    assert_not_stuck(canal, state, dt, options, hand.contact())
     return f"{len(canal.demonstrations)} demonstrations, {'ellipses' if canal.ellipses is not None else 'circles'}"
 
 
@@ -161,23 +160,30 @@ def check(
     assert after.phi == before.phi, "turns on its disk"
 
 
-def assert_not_stuck(canal: CanalSurface, state: NavigationState, dt: float, options: NavigationOptions) -> None:
-    """With everything let go, some button or push of the stick gets the robot going again."""
+def assert_not_stuck(
+    canal: CanalSurface, state: NavigationState, dt: float, options: NavigationOptions, contacts: dict[str, Any]
+) -> None:
+    """With everything let go, and whatever presses, some button or push of the stick gets the robot going again."""
     rest = np.zeros(JOYSTICK_SIZE)
     for k in range(math.ceil(PATIENCE_S / dt)):
-        state = step(canal, state, rest, dt, options=options)
+        state = step(canal, state, rest, dt, options=options, **contacts)
         if k * dt > 0.2 and state.pause_s < 0:
             break
     tries: dict[str, list[np.ndarray]] = {"nothing": []}
     for name, place in (("gripper", 2), ("reverse", 3), ("start", 4)):
         tries[name] = [np.eye(JOYSTICK_SIZE)[place]]
     tries["start, reverse"] = [*tries["start"], rest, *tries["reverse"]]
-    moved = []
-    for name, presses in tries.items():
+    for angle in np.arange(8) * math.pi / 4:
+        push = np.concatenate([[math.cos(angle), math.sin(angle)], np.zeros(4)])
+        tries[f"start, stick {angle:.1f}"] = [*tries["start"], rest, *[push] * math.ceil(0.2 / dt)]
+    moved = False
+    for presses in tries.values():
         now, begin = state, canal.point(state.disk, state.eta, state.phi)
         for joystick in [*presses, *[rest] * math.ceil(PATIENCE_S / dt)]:
-            now = step(canal, now, joystick, dt, options=options)
+            now = step(canal, now, joystick, dt, options=options, **contacts)
             if np.linalg.norm(canal.point(now.disk, now.eta, now.phi) - begin) > 1e-6 or now.disk != state.disk:
-                moved.append(name)
+                moved = True
                 break
-    assert moved, f"stuck: {state} with {options}"
+        if moved:
+            break
+    assert moved, f"stuck: {state} with {options}, {contacts}"

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import json
 import os
+import resource
 import subprocess
 import sys
 import tempfile
-import time
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
@@ -25,6 +25,7 @@ class Ended(NamedTuple):
     output: str
     errors: str
     seconds: float
+    """Of processor time: others may use the machine."""
 
 
 @contextmanager
@@ -37,7 +38,7 @@ def empty_folder() -> Iterator[Path]:
 def command(module: str, *arguments: object, folder: Path, patience: float = 1200.0) -> Ended:
     """Run `python -m geosacs_drake.MODULE arguments` in `folder`; one that hangs ends with status -1."""
     line = [sys.executable, "-m", f"geosacs_drake.{module}", *map(str, arguments)]
-    begin = time.monotonic()
+    begin = _spent()
     environment = os.environ | {"PYTHONPATH": str(ROOT)}
     try:
         ended = subprocess.run(
@@ -48,7 +49,13 @@ def command(module: str, *arguments: object, folder: Path, patience: float = 120
         status, output, errors = -1, late.stdout or b"", late.stderr or b""
     words = (output.decode(errors="replace"), errors.decode(errors="replace"))
     print(" ".join(line[2:]), f"-> {status}", *words, sep="\n", flush=True)
-    return Ended(status, *words, time.monotonic() - begin)
+    return Ended(status, *words, _spent() - begin)
+
+
+def _spent() -> float:
+    """Processor time of the commands so far [s]."""
+    usage = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return usage.ru_utime + usage.ru_stime
 
 
 def summary_of(path: Path) -> dict[str, Any]:

@@ -13,8 +13,10 @@ from models import MODELS
 
 CASES = ROOT.parent / "shared" / "cases"
 """Inputs that went wrong once, when they lie beside the project."""
-SECONDS = 30.0
-"""A few seconds alone; several times that beside another run."""
+SECONDS = 10.0
+"""Of processor time."""
+HOLDS_NOW = ("learn_n_disks_201.yaml",)
+"""Was refused once; every field of learning can be given now."""
 GOOD = MODELS / "demonstrations" / "relocation_1.npz"
 OTHER = MODELS / "demonstrations" / "relocation_2.npz"
 RUN = ("run_relocation", "--headless", "--duration", "1")
@@ -39,7 +41,7 @@ def _judged(cases: dict[str, tuple[object, ...]], folder: Path) -> Figures:
     before, bad = {path.name for path in folder.iterdir()}, {}
     slowest = 0.0
     for name, (module, *arguments) in cases.items():
-        ended = command(str(module), *arguments, folder=folder, patience=4 * SECONDS)
+        ended = command(str(module), *arguments, folder=folder, patience=60 * SECONDS)
         slowest = max(slowest, ended.seconds)
         if why := _refused(ended, folder, before):
             bad[name] = why
@@ -69,7 +71,11 @@ def shared_scenarios() -> Figures:
     """Scenarios that cannot be used."""
     with empty_folder() as folder:
         files = sorted((CASES / "scenarios").glob("*.yaml"))
-        return _judged({f.name: (*RUN, "--scenario", f.resolve()) for f in files}, folder)
+        cases = {f.name: (*RUN, "--scenario", f.resolve()) for f in files}
+        runs = [command(*cases.pop(name), folder=folder).status == 1 for name in HOLDS_NOW if name in cases]
+        figures = dict(_judged(cases, folder))
+        figures["all refused"] *= float(all(runs))  # they run: too short to be done
+    return figures
 
 
 def made_here() -> Figures:
