@@ -64,23 +64,18 @@ class ContactSensor(LeafSystem):
             if sensor is not None:
                 sensor._calc_touches(context, touches)
 
-        self._touches = self.DeclareCacheEntry(
+        entry = self.DeclareCacheEntry(
             "touches",
             ValueProducer(allocate=lambda: AbstractValue.Make(np.zeros(2 * pairs + 3)), calc=calc),
             contacts,
         )
-        touches = {self._touches.ticket()}
-        for name, size, part in (
-            ("contact_forces", pairs, slice(0, pairs)),
-            ("touching_bodies", pairs, slice(pairs, 2 * pairs)),
-            ("hand_force", 3, slice(2 * pairs, None)),
-        ):
-            self.DeclareVectorOutputPort(
-                name,
-                size,
-                lambda context, output, part=part: output.SetFromVector(self._touches.Eval(context)[part]),
-                touches,
-            )
+        # By its index: the entry itself would keep this system, which keeps it.
+        self._touches = entry.cache_index()
+        touches = {entry.ticket()}
+        # Methods, not lambdas: Drake keeps a lambda for ever, and with it whom it names.
+        self.DeclareVectorOutputPort("contact_forces", pairs, self._calc_forces, touches)
+        self.DeclareVectorOutputPort("touching_bodies", pairs, self._calc_bodies, touches)
+        self.DeclareVectorOutputPort("hand_force", 3, self._calc_hand, touches)
         self.DeclareVectorOutputPort("penetration", 1, self._calc_penetration, {self._query.ticket()})
 
     def _pair(self, a: int, b: int) -> int | None:
@@ -103,6 +98,15 @@ class ContactSensor(LeafSystem):
             if body in self._hand:
                 hand += force
         touches.set_value(np.concatenate([of_bodies.sum(axis=1), of_bodies.argmax(axis=1), self._R_BW.multiply(hand)]))
+
+    def _calc_forces(self, context: Context, output: BasicVector) -> None:
+        output.SetFromVector(self.get_cache_entry(self._touches).Eval(context)[: len(self.contact_pairs)])
+
+    def _calc_bodies(self, context: Context, output: BasicVector) -> None:
+        output.SetFromVector(self.get_cache_entry(self._touches).Eval(context)[len(self.contact_pairs) : -3])
+
+    def _calc_hand(self, context: Context, output: BasicVector) -> None:
+        output.SetFromVector(self.get_cache_entry(self._touches).Eval(context)[-3:])
 
     def _calc_penetration(self, context: Context, output: BasicVector) -> None:
         query = self._query.Eval(context)
