@@ -147,7 +147,7 @@ def test_unknown_name_lists_those_that_ship():
         ({"contact": {"time_step": 0.02}}, "contact.time_step is 0.02"),
         ({"contact": {"approximation": "magic"}}, "contact.approximation is 'magic'"),
         ({"control_rate_hz": [1]}, "control_rate_hz is [1]; give a number"),
-        ({"learning": {"stepp": 0.1}}, "learning.stepp is not known; use step"),
+        ({"learning": {"stepp": 0.1}}, "learning.stepp is not known; use preset, step, "),
         ({"navigation": {"speed_scale": -2}}, "navigation.speed_scale is -2;"),
         ({"navigation": {"decay_lambda": -0.01}}, "navigation.decay_lambda is -0.01; give a number of 0 or more"),
         ({"navigation": {"speed_scale": float("inf")}}, "navigation.speed_scale is inf; give a finite number"),

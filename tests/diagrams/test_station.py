@@ -80,7 +80,7 @@ def test_starts_where_told(laundry):
 
 def test_rests(laundry):
     """Nothing moves by itself: no energy comes from contact at rest, nothing sinks in, nothing is touched."""
-    laundry.run(1.0)
+    laundry.run(1.5)  # the bundles lean over first, each in its own time
     assert laundry["item_speeds"].max() < 0.02
     before = laundry["item_poses"].reshape(-1, 7)[:, :3].copy()
     laundry.run(0.5)

@@ -8,7 +8,7 @@ from diagrams.ik_solver import IkSolver
 from diagrams.lio_arm import TCP_FRAME, make_arm_plant
 from diagrams.lio_station import LioStation
 from diagrams.pose_vector import vector_to_pose
-from diagrams.scenario import Robot, load_scenario
+from diagrams.scenario import Region, Robot, load_scenario
 
 # R_BT with x_T straight down; at azimuth 0 the fingers open along y_B.
 DOWN = np.array([0.0, 0.7071067811865476, 0.0, -0.7071067811865476])
@@ -36,8 +36,7 @@ def test_carried_without_slip(name):
     scenario.things, scenario.items = [table], [item]
     item.kind = "rigid"
     scenario.control_rate_hz = 1 / STEP
-    item.start.frame = ""
-    item.start.center, item.start.half_widths, item.start.yaw_deg = [0.45, 0.0, 0.30], [0.0, 0.0], [0.0, 0.0]
+    item.start = Region(center=[0.45, 0.0, 0.30])
 
     solver = IkSolver(make_arm_plant(), TCP_FRAME, scenario.ik)
     low = reach(solver, np.array([0.45, 0.0, 0.335]), NEAR)
