@@ -56,7 +56,7 @@ def test_short_run_is_not_done_and_writes_its_files(task, tmp_path, capfd):
     assert data["ik"]["bound_violations"] == 0
     with np.load(log, allow_pickle=False) as signals:
         ticks = len(signals["time"])
-        assert ticks == pytest.approx(150, abs=2)
+        assert ticks == pytest.approx(181, abs=2)
         for name, size in (("X_BT_desired", 7), ("X_BT", 7), ("q_command", 6), ("q", 6), ("stick", 2), ("buttons", 4)):
             assert signals[name].shape == (ticks, size)
         for name in ("disk", "eta", "phi", "leg", "gripper", "ik_status"):
