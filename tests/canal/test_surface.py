@@ -181,6 +181,14 @@ def test_points_are_clipped_at_planes_towards_the_centre():
     assert np.array_equal(clipped.point(s, 1.0, np.pi), canal.point(s, 1.0, np.pi))
 
 
+def test_a_centre_beyond_a_plane_that_its_disk_is_level_with_divides_nothing():
+    canal = hard_canal(3)
+    up = tuple(canal.normals[0].tolist())
+    below = SupportPlane(up, float(canal.directrix[0] @ canal.normals[0]) + 0.01)
+    sunk = canal.with_(support_planes=(below,))
+    assert np.isfinite([sunk.point(0, 1.0, phi) for phi in np.arange(0, 6.3, 0.1)]).all()
+
+
 def test_arrays_cannot_be_written():
     with pytest.raises(ValueError, match="read-only"):
         hard_canal().radii[0] = 1

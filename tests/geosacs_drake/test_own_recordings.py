@@ -7,7 +7,8 @@ import pytest
 
 from canal.demonstration import load_demonstration
 from canal.learning import learn_canal
-from diagrams.scenario import load_scenario
+from canal.refinement import dips
+from diagrams.scenario import load_scenario, shipped_scenarios
 from geosacs_drake.options import RunOptions
 from geosacs_drake.prepare_canal import prepare_canal, prepare_task
 from geosacs_drake.run import main
@@ -72,6 +73,19 @@ def test_a_canal_from_a_file_keeps_the_scenarios_planes(name, tmp_path):
     np.testing.assert_array_equal(loaded.normals, learned.normals)
     np.testing.assert_array_equal(loaded.x_axes, learned.x_axes)
     assert np.isclose(np.abs(loaded.normals[0] @ loaded.support_planes[0].normal), 1.0), "the paper's refinement"
+
+
+@pytest.mark.parametrize("name", shipped_scenarios())
+def test_every_shipped_scenario_refines_its_canal_at_a_surface(name):
+    scenario = load_scenario(name)
+    canal = prepare_canal(scenario, RunOptions())
+    plane = scenario.support_planes[0]
+    assert np.allclose(canal.normals[0], plane.normal, atol=1e-9), "the first disk is level with it"
+    scenario.support_planes = []
+    as_shown = prepare_canal(scenario, RunOptions())
+    assert not np.allclose(as_shown.normals[0], plane.normal, atol=1e-3)
+    assert dips(as_shown.directrix, as_shown.normals, as_shown.radii, plane).max() > 0, "as shown, a disk dips into it"
+    assert dips(canal.directrix, canal.normals, canal.radii, plane).max() <= 1e-9
 
 
 def test_a_canal_that_passes_below_the_scenarios_plane_is_refused(tmp_path, capfd):
