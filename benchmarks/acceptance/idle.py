@@ -17,7 +17,7 @@ from diagrams.joystick_recording import JoystickRecording
 from diagrams.scenario import load_scenario
 from diagrams.shared_autonomy import build_shared_autonomy
 from geosacs_drake.options import RunOptions
-from geosacs_drake.prepare_canal import prepare_canal
+from geosacs_drake.prepare_canal import prepare_canal, prepare_task
 from geosacs_drake.simulate import simulate
 from models import SCENARIOS
 
@@ -74,7 +74,7 @@ def _build(scenario: str, state: str, folder: Path):
         name = _with_wall(str(name), folder)
     options = RunOptions(headless=True, demos=demos)
     spec = load_scenario(name)
-    canal = prepare_canal(spec, options)
+    spec, canal = prepare_task(spec, options)
     recording = _recording(PRESSES[state])
     system = build_shared_autonomy(scenario=spec, canal=canal, operator=recording, seed=0)
     return system, [item.name for item in spec.items]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
@@ -13,15 +14,16 @@ from canal.demonstration import save_demonstration
 from canal.surface import CanalSurface
 
 MINUTES = 0.3
-FIRST_HELD_BACK = 100
-"""Seed of the first pair; those below were looked at when the fitting was made."""
-_LINES = (
-    Count("carry 3 of 3", "success"),
+HELD_BACK = range(7100, 7120)
+"""Seeds of the tests' generator that no test and no tuning looks at."""
+_RUNS = (
     Worst("disks of the canal that were not travelled", "left out", at_most(1.0)),
-    Worst("surroundings", "surroundings", exactly(0, "N")),
+    Worst("surroundings", "surroundings", at_most(140, "N")),
     Worst("tool error", "tool error", at_most(20, "mm")),
     Worst("joint speed, of its limit", "joint speed", at_most(1.0)),
+    Worst("bound violations", "bound violations", exactly(0)),
 )
+"""What holds in runs on the recordings; 140 N is ISO/TS 15066's bound for a hand."""
 
 
 def recorded_pair(seed: int) -> Figures:
@@ -30,39 +32,43 @@ def recorded_pair(seed: int) -> Figures:
 
 
 def generated_pair(seed: int) -> Figures:
-    """Two recordings as a person's who leads the Lio by its hand, of a seed that no test knows."""
+    """Two demonstrations as a person leads the robot's hand, within its reach."""
     with empty_folder() as folder:
         demos = [folder / f"{k}.npz" for k in (1, 2)]
-        for path, demonstration in zip(demos, hard_demonstrations(seed, hardness=HAND_GUIDED), strict=True):
+        for path, demonstration in zip(demos, hard_demonstrations(seed, 2, hardness=HAND_GUIDED), strict=True):
             save_demonstration(path, demonstration)
         return _carried(demos, seed)
 
 
-def _carried(demos: list[Path], seed: int) -> Figures:
-    """What comes of a relocation by the canal that is learned from these files."""
+def _carried(demos: Sequence[Path], seed: int) -> Figures:
+    """A relocation on the canal of some demonstrations, with nothing else said."""
     with empty_folder() as folder:
         command("learn", *demos, "-o", "canal.npz", folder=folder)
         canal = CanalSurface.load(folder / "canal.npz")
         files = ("--summary", "s.json", "--log", "l.npz")
         ended = command("run_relocation", "--headless", "--demos", *demos, "--seed", seed, *files, folder=folder)
+        if not (folder / "s.json").exists():
+            return {"success": 0.0}
         summary, disk = summary_of(folder / "s.json"), log_of(folder / "l.npz")["disk"]
     print(summary)
+    placed = [item["name"] for item in summary["items"] if item["placed"]]
     return {
-        "success": float(ended.status == 0 and summary["success"] and len(summary["items"]) == 3),
+        "success": float(ended.status == 0 and sorted(placed) == ["apple", "cube", "cup"]),
         "left out": canal.n_disks - 1 - float(np.ptp(disk)),
         "surroundings": max(summary["max_contact_force_n"].values()),
         "tool error": 1e3 * summary["tcp_error_m"]["max"],
         "joint speed": summary["peak_joint_speed_share"],
+        "bound violations": summary["ik"]["bound_violations"],
     }
 
 
 def checks() -> list[Check]:
-    """The recordings, when they lie beside the project."""
+    """The recordings, when they lie beside the project, and held-back pairs always."""
     absent = "" if len(list(RECORDED.glob("*.npz"))) == 2 else f"no recordings in {RECORDED}"
-    jobs = [Job(recorded_pair, (seed,), MINUTES) for seed in range(10)]
-    generated = [Job(generated_pair, (seed,), MINUTES) for seed in range(FIRST_HELD_BACK, FIRST_HELD_BACK + 20)]
-    most = Count("carry 3 of 3", "success", share=0.9)
+    of_recorded = [Job(recorded_pair, (seed,), MINUTES) for seed in range(10)]
+    held_back = [Job(generated_pair, (seed,), MINUTES) for seed in HELD_BACK]
+    carried = Count("carry apple, cup and cube", "success")
     return [
-        Check("recorded pair, relocation", "12.2", jobs, _LINES, missing=absent),
-        Check("generated pairs, relocation", "12.2", generated, (most,)),
+        Check("recorded pair, relocation", "12.2", of_recorded, (carried, *_RUNS), missing=absent),
+        Check("generated pairs, relocation", "12.2", held_back, (Count("carry apple, cup and cube", "success", 0.9),)),
     ]
