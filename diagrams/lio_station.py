@@ -77,7 +77,7 @@ class LioStation(Diagram):
         stops = arm_stops(plant)
         drive = LioDrive(
             checked_posture(q0, stops),
-            period=1.0 / scenario.control_rate_hz,
+            period=in_step(1.0 / scenario.control_rate_hz),
             time_step=plant.time_step(),
             stops=stops,
             speeds=arm_speeds(plant),

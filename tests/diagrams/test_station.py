@@ -17,7 +17,7 @@ PORTS = {
 }  # fmt: skip
 SPEED = np.deg2rad(95.0)
 """[rad/s] Of every joint of the arm (SPEC section 6)."""
-RATE = 50
+RATE = 60
 """[Hz] Of commands, and of the rig's scenario."""
 
 
@@ -119,10 +119,10 @@ def test_no_joint_exceeds_its_speed_when_full_speed_is_commanded(how):
     """From rest to full speed and back, or from full speed to the other way, from one command to the next."""
     rig = Rig(change=lambda s: s.items.__delitem__(slice(1, None)))
     if how == "all start and stop":
-        directions = np.outer((np.arange(30) > 3) & (np.arange(30) < 15), [1.0, -1, 1, -1, 1, 1])
+        directions = np.outer((np.arange(40) > 3) & (np.arange(40) < 15), [1.0, -1, 1, -1, 1, 1])
     else:
         joint = 1 if how == "shoulder turns back" else 2
-        directions = np.outer(np.where(np.arange(30) // 10 % 2, 1.0, -1.0), np.eye(6)[joint])
+        directions = np.outer(np.where(np.arange(40) // 10 % 2, 1.0, -1.0), np.eye(6)[joint])
     ticks = START_POSTURE + SPEED / RATE * np.vstack([np.zeros(6), np.cumsum(directions, axis=0)])
     _, speeds = rig.follow(lambda t: ticks[round(t * RATE)], 0.6)
     assert 0.9 * SPEED < np.abs(speeds).max() <= SPEED
