@@ -11,9 +11,10 @@ from yaml import YAMLError
 from canal.errors import InputError
 from canal.learning_options import LearningOptions
 from canal.navigation import NavigationOptions
-from canal.options import Angle, Coordinate, Position, Positive, Vector2, options, read_options
+from canal.options import Angle, Coordinate, Position, options, read_options, short
 from canal.refinement import SupportPlane
 from diagrams.ik_options import IkOptions
+from diagrams.model_files import check_model
 from diagrams.monitor import MonitorOptions
 from diagrams.operator_options import OperatorOptions
 from models import MODELS, SCENARIOS
@@ -96,7 +97,9 @@ class Region:
     reach: list[HalfWidth] = field(default_factory=list)
     """Instead of half widths: how far it reaches from the middle [m], at equal angles from x of the frame on; between
     them linear. One number is a disk."""
-    yaw_deg: Annotated[Vector2, AfterValidator(_ordered)] = field(default_factory=lambda: [0.0, 0.0])
+    yaw_deg: Annotated[list[Angle], Field(min_length=2, max_length=2), AfterValidator(_ordered)] = field(
+        default_factory=lambda: [0.0, 0.0]
+    )
     """Least and largest turn about z."""
     room: Room | None = None
     """What the fingers need around the thing; None: `item_spacing` alone."""
@@ -127,8 +130,8 @@ class Drum:
     """Centre of the door's plane in W [m]."""
     inward: Annotated[Position, AfterValidator(_axis)] = field(default_factory=lambda: [0.0, 1.0, 0.0])
     """The drum's axis, into the machine: along an axis of W, as the things' bounds are. Turn the robot instead."""
-    depth: Positive = 0.34
-    radius: Positive = 0.25
+    depth: Annotated[float, Field(gt=0, le=10)] = 0.34
+    radius: Annotated[float, Field(gt=0, le=10)] = 0.25
 
 
 @options()
@@ -142,7 +145,7 @@ class Contact:
     approximation: Literal["lagged", "similar", "sap"] | None = None
     """None: `lagged` where there is cloth, else `sap`, with which rigid pieces creep half as far in the hand."""
     model: Literal["hydroelastic_with_fallback", "point"] = "hydroelastic_with_fallback"
-    stiction_tolerance: Annotated[float, Field(gt=0, le=0.1)] = 2e-4
+    stiction_tolerance: Annotated[float, Field(ge=1e-6, le=0.1)] = 2e-4
     """Speed [m/s] below which friction holds; what is held creeps at up to this. In a carry of 20 s cloth slips by 1 to
     2 mm; half of it takes a tenth more time; with Drake's default of 1e-3 a held piece creeps 2.5 times as far. `sap`
     does not ask for it."""
@@ -205,11 +208,14 @@ class Scenario:
         """
         beside = Path(self.folder) / name
         shipped = folder / f"{name}{suffix}"
-        for path in (beside, shipped):
-            if path.is_file():
-                return path
+        try:
+            for path in (beside, shipped):
+                if path.is_file():
+                    return path
+        except OSError as error:
+            raise InputError(f"{short(name)} cannot be looked up ({error.strerror})") from None
         there = ", ".join(sorted(p.stem if suffix else p.name for p in folder.glob(f"*{suffix or '.npz'}")))
-        raise InputError(f"{name!r} does not exist; give a file or one of {there}")
+        raise InputError(f"{short(name)} does not exist; give a file or one of {there}")
 
 
 def shipped_scenarios() -> list[str]:
@@ -228,7 +234,7 @@ def load_scenario(name: str | Path) -> Scenario:
         path = SCENARIOS / f"{name}.yaml"
     if not path.is_file():
         known = ", ".join(shipped_scenarios())
-        raise InputError(f"scenario {str(name)!r} does not exist; give a YAML file or one of {known}")
+        raise InputError(f"scenario {short(str(name))} does not exist; give a YAML file or one of {known}")
     try:
         scenario = read_options(Scenario, yaml_load(filename=str(path)))
         scenario.folder = str(path.parent)
@@ -256,22 +262,31 @@ def check_names(scenario: Scenario) -> None:
         InputError: with the key, its value and what it may be.
     """
     fixtures, names = [thing.name for thing in scenario.things], [item.name for item in scenario.items]
-    for thing in scenario.things:
-        scenario.resolve(thing.model, MODELS / "world", ".sdf")
+    for k, thing in enumerate(scenario.things):
+        _check_model(scenario, f"things[{k}].model", thing.model, carried=False)
     if not scenario.items:
         raise InputError("items is empty; give at least one thing to carry")
     for item in scenario.items:
         if not item.name or names.count(item.name) > 1:
             raise InputError(f"items.name is {item.name!r}; give each item a name of its own")
-        scenario.resolve(item.model, MODELS / "items", ".sdf")
+        _check_model(scenario, f"items.{item.name}.model", item.model, carried=True)
         for key in ("start", "soft_start", "goal"):
             region = getattr(item, key)
             if region is not None and region.frame and region.frame not in fixtures:
                 known = ", ".join(fixtures)
-                raise InputError(f"items.{item.name}.{key}.frame is {region.frame!r}; use one of {known}")
+                raise InputError(f"items.{item.name}.{key}.frame is {short(region.frame)}; use one of {known}")
         if item.goal is None and scenario.drum is None:
             raise InputError(f"items.{item.name} has no goal, and there is no drum; give one of them")
     if scenario.canal is None and not scenario.demonstrations:
         raise InputError("there is neither canal nor demonstrations; give one of them")
     for name in (*scenario.demonstrations, *([scenario.canal] if scenario.canal is not None else [])):
         scenario.resolve(name, MODELS / "demonstrations")
+
+
+def _check_model(scenario: Scenario, key: str, name: str, *, carried: bool) -> None:
+    try:
+        path = scenario.resolve(name, MODELS / ("items" if carried else "world"), ".sdf")
+        if not path.resolve().is_relative_to(MODELS.resolve()):  # tests have looked at those that ship
+            check_model(path, (Path(scenario.folder), MODELS), carried=carried)
+    except InputError as error:
+        raise InputError(f"{key}: {error}") from None

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import io
+import re
 import sys
 from collections.abc import Callable, Sequence
 from enum import IntEnum
@@ -60,7 +61,8 @@ def _first_sentence(box: str) -> str:
         if not text or set(text) <= {"─", "╰", "╯"}:
             break
         words.append(text)
-    return " ".join(words).rstrip(".") or "the options cannot be read"
+    # tyro names our class where the class itself has refused a value.
+    return re.sub(r"^Error parsing \w+: ", "", " ".join(words)).rstrip(".") or "the options cannot be read"
 
 
 def status_of(main: Callable[[], ExitStatus], prog: str) -> ExitStatus:

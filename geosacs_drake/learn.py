@@ -6,6 +6,7 @@ import math
 import webbrowser
 from collections.abc import Callable, Sequence
 from pathlib import Path
+from typing import NoReturn
 
 import numpy as np
 from tqdm import tqdm
@@ -206,5 +207,10 @@ def _view(page: str, port: int) -> None:
             print()
 
 
+def command(arguments: Sequence[str] | None = None, prog: str = PROG) -> NoReturn:
+    """Learn as the command line says (or `arguments`), and leave with the exit status."""
+    end(lambda: main(parse(arguments, prog)), prog)
+
+
 if __name__ == "__main__":
-    end(lambda: main(parse()), PROG)
+    command()

@@ -64,8 +64,12 @@ def _support_plane(info: tyro.constructors.PrimitiveTypeInfo) -> tyro.constructo
     )
 
 
-def parse(arguments: Sequence[str] | None = None) -> LearnOptions:
+def parse(arguments: Sequence[str] | None = None, prog: str = PROG) -> LearnOptions:
     """The options of a command line; what it does not say is as the preset has it.
+
+    Args:
+        arguments: the command line; None: what the process was given.
+        prog: the command's name, for messages.
 
     Raises:
         InputError: an option that is unknown or has a value that it cannot take.
@@ -73,8 +77,8 @@ def parse(arguments: Sequence[str] | None = None) -> LearnOptions:
     words = [_OLD_NAMES.get(word, word) for word in (sys.argv[1:] if arguments is None else arguments)]
     schema: type[LearnOptions] = Annotated[LearnOptions, tyro.conf.UseAppendAction]  # type: ignore[assignment]
     with _PRIMITIVES:
-        read = parse_options(schema, PROG, words)
+        read = parse_options(schema, prog, words)
         if read.learning.preset == MEASURED.preset:
             return read
         preset = LearnOptions(learning=LearningOptions(preset=read.learning.preset))
-        return parse_options(schema, PROG, words, default=preset)
+        return parse_options(schema, prog, words, default=preset)

@@ -67,6 +67,9 @@ def finish(
     Returns:
         Whether the task was done, or that a file is missing or something inside ended the run.
     """
+    if result.failure and not len(result.signals["time"]):
+        print(f"{prog}: {result.reason}; nothing was measured before", file=sys.stderr)
+        return ExitStatus.BAD_INPUT
     summary: dict[str, Any] = {}
     failures = write_each([("measures", lambda: summary.update(summarize(result)))])
     writers: list[tuple[str, Callable[[], object]]] = []

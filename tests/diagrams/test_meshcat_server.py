@@ -4,9 +4,13 @@ import socket
 import subprocess
 import sys
 
+import numpy as np
 import pytest
+from waiting import wait_until
+from websocket import Client
 
 from canal.errors import InputError
+from diagrams import meshcat_server
 from diagrams.meshcat_server import leave, start_meshcat
 
 
@@ -73,3 +77,29 @@ def test_leaves_at_once_with_a_browser_connected(page):
     output, _ = program.communicate("\n", timeout=60)
     assert output == "connections 1"
     assert program.returncode == 7
+
+
+def test_a_recording_has_an_address_of_its_own():
+    hidden = start_meshcat(hidden=True)
+    host = hidden.web_url().removeprefix("http://").partition(":")[0]
+    if not sys.platform.startswith("linux"):
+        return
+    assert host.startswith("127.")
+    with pytest.raises(ConnectionRefusedError):
+        socket.create_connection(("127.0.0.1", hidden.port()), timeout=5)
+    assert "</html>" in hidden.StaticHtml()
+
+
+def test_a_client_that_does_not_read_is_cut_off(monkeypatch):
+    monkeypatch.setattr(meshcat_server, "DEAF_MS", 500)
+    meshcat = start_meshcat(port=0)
+    client = Client(meshcat.port())
+    wait_until(lambda: meshcat.GetNumActiveConnections() == 1, "the client")
+    line = np.random.default_rng(0).random((3, 100000))
+
+    def gone() -> bool:
+        meshcat.SetLine("line", line)  # 1 MB that it does not take
+        return meshcat.GetNumActiveConnections() == 0
+
+    wait_until(gone, "the client to be cut off", 60)
+    client.socket.close()
