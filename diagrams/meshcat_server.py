@@ -157,13 +157,23 @@ def _listeners(port: int) -> Iterator[socket.socket]:
                     yield found
 
 
+def _is_watched(meshcat: Meshcat) -> bool:
+    """Whether a browser is connected, or Meshcat has failed, so that its destructor is not to be waited for."""
+    try:
+        watched = meshcat.GetNumActiveConnections() > 0
+        if watched:
+            meshcat.Flush()
+    except RuntimeError:  # its thread has ended
+        return True
+    return watched
+
+
 def leave(status: int, meshcat: Meshcat | None = None) -> NoReturn:
     """End the process with `status`; at once even while a browser is connected. Write files before.
 
     Meshcat's destructor waits for its browsers (10 s); with one connected the process ends without destructors.
     """
-    if meshcat is not None and meshcat.GetNumActiveConnections() > 0:
-        meshcat.Flush()
+    if meshcat is not None and _is_watched(meshcat):
         sys.stdout.flush()
         sys.stderr.flush()
         os._exit(status)

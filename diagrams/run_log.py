@@ -45,7 +45,10 @@ class RunLog:
         found = {"time": first.sample_times().copy()} | {name: log.data().T.copy() for name, log in logs.items()}
         for name, sink in self._samples.items():
             log = sink.FindLog(root)
-            last = sink.get_input_port().Eval(sink.GetMyContextFromRoot(root))
+            if not log.num_samples():  # it ended before anything was sampled
+                continue
+            # Not by its port: what Python holds of a sink's port keeps the diagram for ever.
+            last = sink.EvalVectorInput(sink.GetMyContextFromRoot(root), 0).value()
             # At a sample's time the log has what held until then. The last row only tells when it ends.
             values = np.vstack([log.data().T[1:], last, 0 * last])
             found[name] = values

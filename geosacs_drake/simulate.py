@@ -97,7 +97,9 @@ def simulate(
     except (Exception, SystemExit) as error:  # Drake says `SystemExit` where a condition of its own does not hold
         reason, failure = describe_failure(error, system, rest, root), one_line(str(error)) or type(error).__name__
     finally:
-        gc.unfreeze()  # or all that was built for this run would stay for ever
+        # Or all that was built for this run would stay for ever: the monitor names the diagram, which keeps it.
+        simulator.clear_monitor()
+        gc.unfreeze()
     return _result(system, root, task, seed, item_names, reason, failure, np.array(factors))
 
 
