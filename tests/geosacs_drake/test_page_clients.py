@@ -2,6 +2,7 @@
 
 import json
 import re
+import time
 
 import numpy as np
 import pytest
@@ -32,6 +33,7 @@ def test_a_message_that_meshcat_cannot_read_ends_the_run_with_its_files_whole(tm
     with running("geosacs_drake.run_relocation", *files) as command:
         port = port_of(command)
         wait_until(lambda: _connected(port), "the page")
+        time.sleep(8.0)  # until something is measured: the page is there before the run begins
         Client(port).send(message)
         wait_until(lambda: command.process.poll() is not None, "the run to end", 120)
         assert command.process.returncode == 2, command.output
