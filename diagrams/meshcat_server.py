@@ -148,11 +148,21 @@ def _cut_off_deaf_clients(port: int) -> None:
         listener.setsockopt(socket.IPPROTO_TCP, socket.TCP_USER_TIMEOUT, DEAF_MS)
 
 
+def _socket(number: int) -> socket.socket:
+    """A socket of this process by a copy of its file descriptor; the copy is closed where it is none."""
+    copy = os.dup(number)
+    try:
+        return socket.socket(fileno=copy)
+    except OSError:
+        os.close(copy)
+        raise
+
+
 def _listeners(port: int) -> Iterator[socket.socket]:
     """This process's sockets that listen at a port."""
     with contextlib.suppress(OSError):  # no /proc
         for name in os.listdir("/proc/self/fd"):
-            with contextlib.suppress(OSError), socket.socket(fileno=os.dup(int(name))) as found:
+            with contextlib.suppress(OSError), _socket(int(name)) as found:
                 if found.getsockopt(socket.SOL_SOCKET, socket.SO_ACCEPTCONN) and found.getsockname()[1] == port:
                     yield found
 

@@ -1,5 +1,6 @@
 """Meshcat: for this machine only, a taken port, and leaving while a browser looks on."""
 
+import os
 import socket
 import subprocess
 import sys
@@ -88,6 +89,16 @@ def test_a_recording_has_an_address_of_its_own():
     with pytest.raises(ConnectionRefusedError):
         socket.create_connection(("127.0.0.1", hidden.port()), timeout=5)
     assert "</html>" in hidden.StaticHtml()
+
+
+@pytest.mark.skipif(not sys.platform.startswith("linux"), reason="reads /proc")
+def test_starting_a_page_leaves_no_file_open():
+    start_meshcat(port=0)
+    before = len(os.listdir("/proc/self/fd"))
+    with open(os.devnull):  # a file that is no socket
+        for _ in range(5):
+            list(meshcat_server._listeners(1))
+    assert len(os.listdir("/proc/self/fd")) <= before
 
 
 def test_a_client_that_does_not_read_is_cut_off(monkeypatch):
