@@ -33,7 +33,8 @@ class Step(NamedTuple):
     extra: float
     """The user's own costs there."""
     factor: np.ndarray | None
-    """Upper Cholesky factor of H, when the answer is the closed form."""
+    """Upper Cholesky factor of H where the answer is exact: of the rows and columns of the joints at no bound, else of
+    ones."""
 
 
 class StepProgram:
@@ -125,7 +126,11 @@ class StepProgram:
         if rows:
             A, a = np.vstack([A for A, _ in rows]), np.concatenate([a for _, a in rows])
             self._rows.UpdateCoefficients(np.column_stack((A, np.ones(len(a)))), a, np.full(len(a), np.inf))
-        result = self._solver.Solve(self._program, None, self._options)
+        guess = None
+        if self.extended:  # by what may need one
+            guess = np.zeros(self._program.num_vars())
+            guess[: 2 * len(q)] = np.concatenate((q, q - self._q_prev))
+        result = self._solver.Solve(self._program, guess, self._options)
         if not result.is_success():
             return None
         best = self._q_prev + result.GetSolution(self.step)
@@ -146,9 +151,9 @@ class StepProgram:
     def _finish(
         self, gradient: np.ndarray, H: np.ndarray, q: np.ndarray, best: np.ndarray, free: np.ndarray
     ) -> np.ndarray | None:
-        """Solve for the joints at no bound exactly, in place: the factor of their rows and columns of H, else of ones.
+        """Solve for the joints at no bound exactly, in place, and return the factor, see `Step`.
 
-        None, and nothing is done, if that leaves the bounds.
+        Nothing is done, and None returned, if that leaves the bounds.
         """
         fixed, keep = np.where(free, 0.0, best - q), free.astype(float)
         wanted = np.where(free, -gradient - H.dot(fixed), 0.0)

@@ -149,11 +149,10 @@ class IkSolver:
 
         Args:
             X_desired: wanted pose of the tool in the base frame: position [m], quaternion (w, x, y, z), shape (7,).
-            w_o: weight of orientation, one or three (about the tool's axes); negative counts as 0.
+            w_o: weight of orientation; negative counts as 0.
             q_prev: posture one tick ago, shape (n,).
             dt: length of the tick [s].
-            v_prev: joint velocity of the last tick, shape (n,): needed for the bound on acceleration, and a better
-                start when given.
+            v_prev: joint velocity of the last tick, shape (n,): a better start when given.
 
         Whatever the arguments hold, the result is finite and within the bounds; it never raises on values.
         """
@@ -265,7 +264,7 @@ class IkSolver:
         return q, cost, iteration, least
 
     def _hold(self, q_prev: np.ndarray, lower: np.ndarray, upper: np.ndarray, begin: float) -> IkResult:
-        """The last posture, or the nearest that the bounds allow (braking, or on the way back into the limits)."""
+        """The last posture, or the nearest on the way back into the limits."""
         q = np.minimum(np.maximum(q_prev, lower), upper)
         nan = math.nan
         return IkResult(q, IkStatus.HELD, nan, nan, nan, 0, 0, 0.0, time.perf_counter() - begin)

@@ -10,7 +10,7 @@ from matplotlib.image import imread
 EXAMPLES = Path(__file__).parents[2] / "examples"
 
 
-@pytest.mark.parametrize("name", ["learn_and_plot", "navigate", "retarget"])
+@pytest.mark.parametrize("name", ["learn_and_plot", "navigate", "own_constraints", "retarget"])
 def test_an_example_runs_and_draws(name, tmp_path):
     picture = tmp_path / f"{name}.png"
     done = subprocess.run(
