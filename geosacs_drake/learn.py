@@ -17,6 +17,7 @@ from canal.learning import learn_canal
 from canal.quality import CanalQuality, canal_quality
 from canal.surface import CanalSurface
 from geosacs_drake.command_line import ExitStatus, end
+from geosacs_drake.interrupts import Interrupts
 from geosacs_drake.learn_options import PROG, LearnOptions, parse
 from geosacs_drake.outputs import Output, check_outputs, say_failures, write_each
 
@@ -209,7 +210,8 @@ def _view(page: str, port: int) -> None:
 
 def command(arguments: Sequence[str] | None = None, prog: str = PROG) -> NoReturn:
     """Learn as the command line says (or `arguments`), and leave with the exit status."""
-    end(lambda: main(parse(arguments, prog)), prog)
+    with Interrupts():
+        end(lambda: main(parse(arguments, prog)), prog)
 
 
 if __name__ == "__main__":
