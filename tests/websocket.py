@@ -9,7 +9,11 @@ import struct
 
 
 class Client:
-    """A connection to a server on this machine, from a page of another origin."""
+    """A connection to a server on this machine, from a page of another origin, for a `with` block.
+
+    It has to stay open until the server has taken what was sent: a socket that is closed with something unread in it
+    (the scene, which Meshcat sends first) resets its connection, and the kernel drops what the server has not read.
+    """
 
     def __init__(self, port: int) -> None:
         self.socket = socket.create_connection(("127.0.0.1", port), timeout=30)
@@ -23,6 +27,12 @@ class Client:
         while b"\r\n\r\n" not in answer:
             answer += self.socket.recv(1)
         assert b" 101 " in answer
+
+    def __enter__(self) -> Client:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.socket.close()
 
     def send(self, payload: bytes, times: int = 1) -> None:
         """Send a binary message, so many times."""

@@ -104,13 +104,12 @@ def test_starting_a_page_leaves_no_file_open():
 def test_a_client_that_does_not_read_is_cut_off(monkeypatch):
     monkeypatch.setattr(meshcat_server, "DEAF_MS", 500)
     meshcat = start_meshcat(port=0)
-    client = Client(meshcat.port())
-    wait_until(lambda: meshcat.GetNumActiveConnections() == 1, "the client")
-    line = np.random.default_rng(0).random((3, 100000))
+    with Client(meshcat.port()):
+        wait_until(lambda: meshcat.GetNumActiveConnections() == 1, "the client")
+        line = np.random.default_rng(0).random((3, 100000))
 
-    def gone() -> bool:
-        meshcat.SetLine("line", line)  # 1 MB that it does not take
-        return meshcat.GetNumActiveConnections() == 0
+        def gone() -> bool:
+            meshcat.SetLine("line", line)  # 1 MB that it does not take
+            return meshcat.GetNumActiveConnections() == 0
 
-    wait_until(gone, "the client to be cut off", 60)
-    client.socket.close()
+        wait_until(gone, "the client to be cut off", 60)
