@@ -64,29 +64,34 @@ class RecordedJoystick(LeafSystem):
 
 
 class JoystickSelector(LeafSystem):
-    """Lets a person take over from the simulated operator, once and for all, by touching the joystick.
+    """Lets a person take over from the simulated operator by touching the joystick.
 
     ```
                       person (6) → ┌──────────────────┐
+            person_in_charge (1) → │                  │
                    simulated (6) → │ JoystickSelector │ → joystick (6)
     simulated_person_in_charge (1)→└──────────────────┘ → person_in_charge (1)
     ```
 
     Until the person's stick leaves its centre or a button is pressed, `joystick` is `simulated`; from then on it is
-    `person`. `person_in_charge` is 1 from then on, and before it what `simulated_person_in_charge` says of a recording
-    (0 if that is unconnected). An unconnected `person` never takes over; an unconnected `simulated` rests.
+    `person`, once and for all. Where the input `person_in_charge` is connected, it alone says who it is, and a person
+    can hand back. The output of that name is 1 while it is the person, and else what `simulated_person_in_charge` says
+    of a recording (0 if that is unconnected). An unconnected `person` never takes over; an unconnected `simulated`
+    rests.
     """
 
     def __init__(self, period: float = JOYSTICK_PERIOD) -> None:
         """Look at the person's joystick every `period` seconds."""
         super().__init__()
         self._person = self.DeclareVectorInputPort("person", JOYSTICK_SIZE)
+        self._said = self.DeclareVectorInputPort("person_in_charge", 1)
         self._simulated = self.DeclareVectorInputPort("simulated", JOYSTICK_SIZE)
         self._recorded = self.DeclareVectorInputPort("simulated_person_in_charge", 1)
         self._latch = self.DeclareDiscreteState(1)
         prerequisites = {
             self.discrete_state_ticket(self._latch),
             self._person.ticket(),
+            self._said.ticket(),
             self._simulated.ticket(),
         }
         self.DeclareVectorOutputPort("joystick", JOYSTICK_SIZE, self._calc_joystick, prerequisites)
@@ -94,7 +99,12 @@ class JoystickSelector(LeafSystem):
             "person_in_charge",
             1,
             self._calc_in_charge,
-            {self.discrete_state_ticket(self._latch), self._person.ticket(), self._recorded.ticket()},
+            {
+                self.discrete_state_ticket(self._latch),
+                self._person.ticket(),
+                self._said.ticket(),
+                self._recorded.ticket(),
+            },
         )
         self.DeclarePeriodicDiscreteUpdateEvent(period, 0.0, self._update)
 
@@ -103,6 +113,7 @@ class JoystickSelector(LeafSystem):
         *,
         builder: DiagramBuilder,
         person: OutputPort | None = None,
+        person_in_charge: OutputPort | None = None,
         simulated: OutputPort | None = None,
         simulated_person_in_charge: OutputPort | None = None,
         name: str = "joystick_selector",
@@ -111,6 +122,7 @@ class JoystickSelector(LeafSystem):
         selector = builder.AddNamedSystem(name, JoystickSelector())
         for source, port in (
             (person, "person"),
+            (person_in_charge, "person_in_charge"),
             (simulated, "simulated"),
             (simulated_person_in_charge, "simulated_person_in_charge"),
         ):
@@ -124,6 +136,8 @@ class JoystickSelector(LeafSystem):
         return clean_joystick(self._person.Eval(context))
 
     def _in_charge(self, context: Context) -> bool:
+        if self._said.HasValue(context):
+            return self._said.Eval(context).item(0) > 0.5
         # The touch counts in the very sample that shows it; the state only remembers it.
         latched = context.get_discrete_state(self._latch).value().item(0) > 0.5
         return latched or is_touched(self._person_joystick(context))

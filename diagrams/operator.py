@@ -23,9 +23,11 @@ class OperatorMind(LeafSystem):
 
     ```
     sight (13 n + 7 + STATE_SIZE) → OperatorMind → joystick (6)
+           person_in_charge (1) →
     ```
 
-    `sight` is item_poses (7 n, W), item_bounds (6 n, W), X_BT (7, B) and navigation_state, in this order.
+    While `person_in_charge` (optional) is 1 the hand rests; when it falls, the person looks anew and goes on from what
+    is there. `sight` is item_poses (7 n, W), item_bounds (6 n, W), X_BT (7, B) and navigation_state, in this order.
     """
 
     def __init__(self, policy: OperatorPolicy, X_WB: RigidTransform, delay_s: float, noise_m: float) -> None:
@@ -36,6 +38,7 @@ class OperatorMind(LeafSystem):
         self._X_BW = X_WB.inverse()
         self._delay_s, self._noise_m = delay_s, noise_m
         self._sight = self.DeclareVectorInputPort("sight", 13 * n + 7 + STATE_SIZE)
+        self._person = self.DeclareVectorInputPort("person_in_charge", 1)
         mind = self.DeclareDiscreteState(policy.initial())
         hand = self.DeclareDiscreteState(JOYSTICK_SIZE)
         self._mind, self._hand = mind, hand
@@ -45,6 +48,10 @@ class OperatorMind(LeafSystem):
     def _update(self, context: Context, discrete: DiscreteValues) -> None:
         time = context.get_time()
         mind = context.get_discrete_state(self._mind).value()
+        if self._person.HasValue(context) and self._person.Eval(context).item(0) > 0.5:
+            discrete.set_value(self._mind, self._policy.waiting(mind, time))
+            discrete.set_value(self._hand, np.zeros(JOYSTICK_SIZE))
+            return
         if time > self._delay_s + 2.5 * JOYSTICK_PERIOD:  # before that nothing has been sampled, and reached the eye
             mind = self._policy.decide(mind, self._look(self._sight.Eval(context), time), time)
         discrete.set_value(self._mind, mind)
@@ -81,7 +88,7 @@ class SimulatedOperator(Diagram):
           item_poses (7 n) →  ┌───────┐    ┌───────────────────┐    ┌──────────────┐
          item_bounds (6 n) →  │ joined│ →  │ 0.25 s late, 20 Hz│ →  │ OperatorMind │ → joystick (6)
                  X_BT (7)  →  │       │    └───────────────────┘    └──────────────┘
-          navigation_state →  └───────┘
+          navigation_state →  └───────┘                                person_in_charge (1) ↑
     ```
     """
 
@@ -120,6 +127,7 @@ class SimulatedOperator(Diagram):
             builder.ExportInput(joined.get_input_port(index), name)
         builder.Connect(joined.get_output_port(), late.get_input_port())
         builder.Connect(late.get_output_port(), mind.GetInputPort("sight"))
+        builder.ExportInput(mind.GetInputPort("person_in_charge"), "person_in_charge")
         builder.ExportOutput(mind.GetOutputPort("joystick"), "joystick")
         builder.BuildInto(self)
 

@@ -73,11 +73,26 @@ class OperatorPolicy:
         }[Mode(int(state.mode))](state, given_up, tries, sight, time)
         return state.pack(given_up, tries)
 
+    def waiting(self, vector: np.ndarray, time: float) -> np.ndarray:
+        """The state while somebody else has the joystick: what was given up stays so, all else is looked at anew."""
+        _, given_up, tries = OperatorState.unpack(vector, len(self.goals))
+        return OperatorState(busy_until=time + self.options.think_s + self.options.delay_s).pack(given_up, tries)
+
     # ---- what to do in each mode: each changes the state in place ----
 
     def _begin(self, state: OperatorState, given_up: np.ndarray, tries: np.ndarray, sight: Sight, time: float) -> None:
-        self._press(state, START, time)
+        nav = sight.navigation
+        if not nav.running or nav.paused:
+            self._press(state, START, time)
+        if nav.paused:
+            return
         state.mode = Mode.PICK
+        held = [i for i, p in enumerate(sight.positions) if np.linalg.norm(p - sight.p_BT) < self.options.lost_m]
+        if nav.gripper_closed and held:  # somebody else has begun
+            state.thing, state.mode, state.beside = float(held[0]), Mode.CARRY, self._room(sight, held[0])
+            tries[held[0]] += 1
+            if Leg(int(nav.leg)) in (Leg.HOME_TO_PICK, Leg.PLACE_TO_HOME):
+                self._press(state, REVERSE, time)
 
     def _pick(self, state: OperatorState, given_up: np.ndarray, tries: np.ndarray, sight: Sight, time: float) -> None:
         nav = sight.navigation

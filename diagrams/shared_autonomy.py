@@ -23,6 +23,7 @@ from diagrams.joint_pace import at_joint_pace, unhurried
 from diagrams.joystick import JoystickSelector, RecordedJoystick
 from diagrams.joystick_recording import JoystickRecording
 from diagrams.lio_station import START_POSTURE, LioStation
+from diagrams.live_joystick import LiveJoystick, LiveSample
 from diagrams.meshcat_joystick import MeshcatJoystick
 from diagrams.meshcat_notice import MeshcatNotice
 from diagrams.monitor import Monitor
@@ -69,6 +70,8 @@ def build_shared_autonomy(
     recording: Meshcat | None = None,
     video: Path | None = None,
     say: Callable[[Announcement], None] | None = None,
+    show: Callable[[str, str, float], None] | None = None,
+    hand: Callable[[], LiveSample] | None = None,
 ) -> SharedAutonomy:
     """Wire a scenario and a canal into a diagram.
 
@@ -87,6 +90,9 @@ def build_shared_autonomy(
         recording: a Meshcat of its own that records it; None for no recording.
         video: film the room and the gripper's view for this file; saved by `SharedAutonomy.video`.
         say: is told what a person is to be told: what presses, what is stopped, which press did nothing.
+        show: shows what lasts of it, instead of a notice in `meshcat`; see `Announcer`.
+        hand: a person's joystick, who may hand back to the simulated operator; instead of the Meshcat page, which then
+            takes no commands.
 
     Raises:
         InputError: the scenario's things overlap, or the arm cannot reach the canal's home.
@@ -128,10 +134,12 @@ def build_shared_autonomy(
         holds.append(hold)
         measured[name] = hold.get_output_port()
 
-    person = None
-    if operator == "person" and meshcat is not None:
+    person: LiveJoystick | MeshcatJoystick | None = None
+    if hand is not None:
+        person = LiveJoystick.AddToBuilder(builder=builder, read=hand)
+    elif operator == "person" and meshcat is not None:
         person = MeshcatJoystick.AddToBuilder(builder=builder, meshcat=meshcat)
-    if operator == "simulated":
+    if operator == "simulated" or (operator == "person" and hand is not None):
         source = SimulatedOperator.AddToBuilder(
             builder=builder,
             canal=canal,
@@ -144,6 +152,8 @@ def build_shared_autonomy(
         for name in ("item_poses", "item_bounds", "X_BT"):
             builder.Connect(measured[name], source.GetInputPort(name))
         builder.Connect(navigator.GetOutputPort("navigation_state"), source.GetInputPort("navigation_state"))
+        if isinstance(person, LiveJoystick):
+            builder.Connect(person.GetOutputPort("in_charge"), source.GetInputPort("person_in_charge"))
     elif operator == "person":
         source = None
     else:
@@ -151,6 +161,7 @@ def build_shared_autonomy(
     selector = JoystickSelector.AddToBuilder(
         builder=builder,
         person=None if person is None else person.GetOutputPort("joystick"),
+        person_in_charge=person.GetOutputPort("in_charge") if isinstance(person, LiveJoystick) else None,
         simulated=None if source is None else source.GetOutputPort("joystick"),
         simulated_person_in_charge=(
             source.GetOutputPort("person_in_charge") if isinstance(source, RecordedJoystick) else None
@@ -173,7 +184,8 @@ def build_shared_autonomy(
     builder.Connect(selector.GetOutputPort("person_in_charge"), monitor.GetInputPort("person_in_charge"))
 
     canvases = [(canvas, name) for canvas, name in ((meshcat, "view"), (recording, "recording")) if canvas is not None]
-    if say is not None or canvases:
+    noticed = [canvas for canvas, _ in canvases if canvas is not meshcat or show is None]
+    if say is not None or show is not None or canvases:
         announcer = Announcer.AddToBuilder(
             builder=builder,
             canal=canal,
@@ -181,7 +193,8 @@ def build_shared_autonomy(
             robot_bodies=station.robot_bodies,
             limit_n=scenario.monitor.force_limit_n,
             say=say,
-            show=[MeshcatNotice(canvas, station.X_WB).show for canvas, _ in canvases],
+            show=[MeshcatNotice(canvas, station.X_WB).show for canvas in noticed]
+            + ([show] if show is not None else []),
         )
         builder.Connect(navigator.GetOutputPort("navigation_state"), announcer.GetInputPort("navigation_state"))
         for name in ("contact_forces", "touching_bodies"):

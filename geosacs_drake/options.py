@@ -45,10 +45,18 @@ class RunOptions:
     """Write a film here (.gif, or .mp4 where ffmpeg is), seen from the room, with the gripper's view inset."""
     port: int | None = None
     """Port of the page on localhost. Default: the first free one from 7000 on."""
+    console: bool = True
+    """The operator's console: one page with the robot, a joystick, and what the robot does. --no-console leaves
+    Meshcat's page alone."""
+    host: str = "localhost"
+    """Address at which the console listens. 0.0.0.0 lets every machine of the network that knows its address steer the
+    robot: for a tablet, in a network that you trust."""
 
     def __post_init__(self) -> None:
         if self.headless and self.operator in PEOPLE:
             raise InputError(f"--operator {self.operator} needs a browser: leave --headless out")
+        if self.host != "localhost" and (self.headless or not self.console):
+            raise InputError(f"--host {self.host} is the console's: leave --headless and --no-console out")
         if self.demos and self.canal:
             raise InputError("--demos and --canal exclude each other: give one of them")
         if len(self.demos) == 1:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from contextlib import suppress
 from typing import NoReturn
 
@@ -20,6 +20,7 @@ from diagrams.meshcat_server import leave, start_meshcat
 from diagrams.scenario import Scenario, load_scenario, with_items
 from diagrams.shared_autonomy import build_shared_autonomy
 from geosacs_drake.command_line import ExitStatus, end, parse_options, status_of
+from geosacs_drake.console.console import Console
 from geosacs_drake.interrupts import Interrupts, Phase
 from geosacs_drake.options import PEOPLE, RunOptions
 from geosacs_drake.prepare_canal import prepare_task
@@ -57,9 +58,20 @@ def run(options: RunOptions, task: str, prog: str) -> ExitStatus:
             scenario = with_items(scenario, options.items)
         check_run_files(options, scenario)
         scenario, canal = prepare_task(scenario, options)
-        page = None if options.headless else start_meshcat(port=options.port, X_WB=base_pose(scenario.robot))
+        with_console = options.console and not options.headless
+        page = None
+        if not options.headless:
+            # Behind the console, Meshcat has an address that nobody knows: it takes commands from whoever connects.
+            port = None if with_console else options.port
+            page = start_meshcat(port=port, X_WB=base_pose(scenario.robot), hidden=with_console)
+        console = None
+        if page is not None and with_console:
+            person = options.operator in PEOPLE
+            console = Console(page, person=person, host=options.host, port=options.port)
         # From here on a browser may be connected, for which Meshcat's destructor would wait.
-        status = status_of(lambda: _run(options, scenario, canal, page, interrupts, prog), prog)
+        status = status_of(lambda: _run(options, scenario, canal, page, console, interrupts, prog), prog)
+        if console is not None:
+            console.close()
         leave(status, page)
 
 
@@ -68,6 +80,7 @@ def _run(
     scenario: Scenario,
     canal: CanalSurface,
     page: Meshcat | None,
+    console: Console | None,
     interrupts: Interrupts,
     prog: str,
 ) -> ExitStatus:
@@ -84,11 +97,17 @@ def _run(
         meshcat=page,
         recording=recorded,
         video=options.video,
-        say=tell,
+        say=_tell_both(console),
+        show=None if console is None else console.show_standing,
+        hand=None if console is None else console.control.sample,
     )
     for notice in system.notices:
         print(notice, file=sys.stderr, flush=True)
-    if page is not None:
+    report = None if console is None else console.report(system, canal, scenario)
+    if console is not None:
+        print(f"steer, or watch, at {console.address}", flush=True)
+        console.open_browser()
+    elif page is not None:
         steer = f" and steer at {page.web_url()}\n{CONTROLS}" if operator == "person" else f" at {page.web_url()}"
         print(f"watch{steer}", flush=True)
     interrupts.begin(Phase.RUNNING)
@@ -102,9 +121,18 @@ def _run(
             rate=options.rate,
             asked_to_end=lambda: interrupts.asked,
             report=bar.show,
+            watch=(lambda root: None) if report is None else report,
+            wait=(lambda: None) if console is None else lambda: console.wait(lambda: interrupts.asked),
         )
     interrupts.begin(Phase.WRITING)
-    return finish(options=options, result=result, recording=recording, film=system.video, prog=prog)
+    return finish(
+        options=options,
+        result=result,
+        recording=recording,
+        film=system.video,
+        prog=prog,
+        show=None if console is None else console.end,
+    )
 
 
 def operator_of(options: RunOptions):
@@ -114,6 +142,18 @@ def operator_of(options: RunOptions):
     if options.operator in PEOPLE:
         return "person"
     return load_recording(options.operator)
+
+
+def _tell_both(console: Console | None) -> Callable[[Announcement], None]:
+    """Tell the terminal, and the console if there is one."""
+    if console is None:
+        return tell
+
+    def say(announcement: Announcement) -> None:
+        tell(announcement)
+        console.say(announcement)
+
+    return say
 
 
 def tell(announcement: Announcement) -> None:

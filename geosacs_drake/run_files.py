@@ -53,7 +53,13 @@ def inputs_of(options: RunOptions, scenario: Scenario) -> Iterator[Path]:
 
 
 def finish(
-    *, options: RunOptions, result: RunResult, recording: Recording | None, film: VideoRecorder | None, prog: str
+    *,
+    options: RunOptions,
+    result: RunResult,
+    recording: Recording | None,
+    film: VideoRecorder | None,
+    prog: str,
+    show: Callable[[dict[str, Any]], None] | None = None,
 ) -> ExitStatus:
     """Write each file, then say how the run went.
 
@@ -63,6 +69,7 @@ def finish(
         recording: what a page has recorded, if it was asked for.
         film: what the cameras have seen, likewise.
         prog: the command's name, for messages.
+        show: is given the summary before files are written.
 
     Returns:
         Whether the task was done, or that a file is missing or something inside ended the run.
@@ -72,6 +79,8 @@ def finish(
         return ExitStatus.BAD_INPUT
     summary: dict[str, Any] = {}
     failures = write_each([("measures", lambda: summary.update(summarize(result)))])
+    if show is not None:
+        show(summary or {"success": False, "reason": result.reason})
     writers: list[tuple[str, Callable[[], object]]] = []
     if options.summary is not None and summary:
         writers.append(("--summary", partial(write_summary, options.summary, summary)))

@@ -38,7 +38,7 @@ class RunningCommand:
         return address
 
     def _address(self) -> str | None:
-        found = re.search(r"at (http://localhost:\d+)", self.output)
+        found = re.search(r"at (http://localhost:\d+(?:/[\w-]+/)?)", self.output)
         return found and found.group(1)
 
 

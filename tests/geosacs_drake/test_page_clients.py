@@ -24,7 +24,7 @@ def port_of(command) -> int:
 
 
 def arguments(folder, *more):
-    return ("--port", "0", "--summary", str(folder / "s.json"), "--log", str(folder / "l.npz"), *more)
+    return ("--no-console", "--port", "0", "--summary", str(folder / "s.json"), "--log", str(folder / "l.npz"), *more)
 
 
 @pytest.mark.parametrize("message", [b"", b"\xc1\xff"], ids=["empty", "malformed"])

@@ -24,7 +24,7 @@ COLORS = """() => {
 def test_the_task_is_seen_a_key_is_heard_and_it_leaves_in_good_order(page, tmp_path):
     log, summary = tmp_path / "log.npz", tmp_path / "summary.json"
     files = ("--log", str(log), "--summary", str(summary))
-    arguments = ("--operator", "keyboard", "--items", "rigid", *files, "--port", "0")
+    arguments = ("--operator", "keyboard", "--items", "rigid", *files, "--no-console", "--port", "0")
     with running("geosacs_drake.run_laundry", *arguments) as command:
         page.goto(command.address())
         children = "Object.keys(viewer.scene_tree.find(['drake']).children)"

@@ -1,0 +1,117 @@
+"""The console of one run: its server, who steers, and what the run tells it."""
+
+from __future__ import annotations
+
+import os
+import sys
+import time
+import webbrowser
+from collections.abc import Callable
+from typing import Any
+
+from pydrake.geometry import Meshcat
+
+from canal.joystick import JOYSTICK_PERIOD
+from canal.surface import CanalSurface
+from diagrams.announcements import Announcement
+from diagrams.scenario import Scenario
+from diagrams.shared_autonomy import SharedAutonomy
+from geosacs_drake.console.control import Control
+from geosacs_drake.console.link import Answers
+from geosacs_drake.console.server import ConsoleServer
+from geosacs_drake.console.status import StatusReporter
+
+WAIT_FOR_PAGE_S = 15.0
+"""[s] With no page after so long the simulated operator begins."""
+LOOK_S = 0.05
+"""[s] Between two looks whether somebody has begun."""
+
+
+class Console:
+    """What a run holds of its console."""
+
+    def __init__(self, meshcat: Meshcat, *, person: bool, host: str = "localhost", port: int | None = None) -> None:
+        """Serve a console with `meshcat` in its page.
+
+        Args:
+            meshcat: shows the robot.
+            person: whether a person was asked for, without whom the run does not begin.
+            host: the address to listen at.
+            port: see `ConsoleServer`.
+
+        Raises:
+            InputError: the port is taken.
+        """
+        address = meshcat.web_url().removeprefix("http://").partition(":")
+        self.control = Control(person_asked=person)
+        self.answers = Answers()
+        self.server = ConsoleServer(
+            self.control,
+            self.answers,
+            meshcat_address=(address[0], int(address[2])),
+            host=host,
+            port=port,
+        )
+        self._person = person
+        self._standing = ""
+        self.server.start()
+
+    @property
+    def address(self) -> str:
+        """Of the page."""
+        return self.server.address
+
+    def open_browser(self) -> None:
+        """Open the page where there is a display and a terminal to close it from."""
+        display = os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY") or sys.platform in ("darwin", "win32")
+        if display and sys.stdout.isatty():
+            webbrowser.open(self.address)
+
+    def say(self, announcement: Announcement) -> None:
+        """What a person is told goes to the history."""
+        self.server.tell(
+            {"time_s": round(announcement.time_s, 1), "kind": str(announcement.event), "text": announcement.text}
+        )
+
+    def show_standing(self, before: str, text: str, time_s: float) -> None:
+        """What holds from now on."""
+        self._standing = text
+
+    def standing(self) -> str:
+        """What holds now."""
+        return self._standing
+
+    def report(self, system: SharedAutonomy, canal: CanalSurface, scenario: Scenario) -> StatusReporter:
+        """Tell the pages of a run; call what is returned after each step of it."""
+        navigation = scenario.navigation
+        self.answers.full_stick_mm = 1000 * 20.0 / navigation.delta * JOYSTICK_PERIOD
+        self.server.about = {
+            "task": scenario.task,
+            "description": scenario.description or scenario.task,
+            "full_stick_mm": self.answers.full_stick_mm,
+            "disks": canal.n_disks,
+        }
+        return StatusReporter(
+            system=system,
+            canal=canal,
+            item_names=[item.name for item in scenario.items],
+            control=self.control,
+            show=self.server.show,
+            standing=self.standing,
+        )
+
+    def wait(self, asked_to_end: Callable[[], bool]) -> None:
+        """Wait until somebody says Start or Watch, or nobody is there to say it."""
+        begin = time.monotonic()
+        while not self.control.wait_for_beginning(LOOK_S) and not asked_to_end():
+            waited = time.monotonic() - begin
+            if not self._person and not self.server.pages and waited > WAIT_FOR_PAGE_S:
+                self.control.watch()
+
+    def end(self, summary: dict[str, Any]) -> None:
+        """Show what was achieved."""
+        self.server.show_end(summary)
+
+    def close(self) -> None:
+        """Let go of the pages and the port."""
+        self.server.stop()

@@ -1,0 +1,114 @@
+"""What a page may say: numbered, small, checked; a stick is clamped, whatever else does not fit is refused."""
+
+from __future__ import annotations
+
+import math
+from typing import Annotated, Any, Literal
+
+from pydantic import BaseModel, ConfigDict, Field, TypeAdapter, ValidationError
+
+MOST_BYTES = 4096
+"""Of a message; a binding of a gamepad is the longest."""
+
+Coordinate = Annotated[float, Field(allow_inf_nan=False)]
+Pair = tuple[Coordinate, Coordinate]
+Triple = tuple[Coordinate, Coordinate, Coordinate]
+Name = Annotated[str, Field(min_length=1, max_length=60, pattern=r"^[\w .()+-]+$")]
+
+
+class Message(BaseModel):
+    """What all have: a number that grows, and the page's clock."""
+
+    model_config = ConfigDict(extra="forbid", strict=False)
+
+    n: Annotated[int, Field(ge=0, lt=2**53, strict=True)]
+    t: Annotated[float, Field(ge=0, allow_inf_nan=False)] = 0.0
+    """[ms]"""
+
+
+class Drive(Message):
+    """The stick: to the right and up in the unit disc; said again while it is held."""
+
+    type: Literal["drive"]
+    stick: Pair
+
+
+class Step(Message):
+    """A movement of a chosen length, in a direction of the stick."""
+
+    type: Literal["step"]
+    direction: Pair
+    mm: Annotated[float, Field(gt=0, le=50, allow_inf_nan=False)]
+
+
+class Press(Message):
+    """A button, once."""
+
+    type: Literal["press"]
+    button: Literal["gripper", "reverse", "start", "stop"]
+
+
+class Say(Message):
+    """A word about who steers, or about the run."""
+
+    type: Literal["take", "hand_back", "watch", "again", "leave", "hello"]
+
+
+class View(Message):
+    """Which directions of the robot's base frame are right and up in the person's view, and which mapping is used."""
+
+    type: Literal["view"]
+    mapping: Literal["axes", "seat", "view"]
+    seat: Literal["front", "left", "right", "behind"] = "front"
+    right: Triple | None = None
+    up: Triple | None = None
+
+
+class Seen(Message):
+    """The status that was shown, by its number: tells the delay of the link."""
+
+    type: Literal["seen"]
+    status: Annotated[int, Field(ge=0, lt=2**53)]
+
+
+class Bindings(Message):
+    """How the controls of a device are bound, to be kept under a name."""
+
+    type: Literal["bindings"]
+    name: Name
+    bindings: dict[str, Any] = Field(max_length=40)
+
+
+AnyMessage = Annotated[Drive | Step | Press | Say | View | Seen | Bindings, Field(discriminator="type")]
+_ADAPTER: TypeAdapter[AnyMessage] = TypeAdapter(AnyMessage)
+
+
+def read_message(text: str | bytes, last: int) -> AnyMessage:
+    """A message from a page.
+
+    Args:
+        text: as it came.
+        last: number of the one before.
+
+    Raises:
+        ValueError: it is broken; says how, in a few words.
+    """
+    if not isinstance(text, str):
+        raise ValueError("give text, not bytes")
+    if len(text) > MOST_BYTES:
+        raise ValueError(f"give at most {MOST_BYTES} letters")
+    try:
+        message = _ADAPTER.validate_json(text)
+    except ValidationError as error:
+        first = error.errors()[0]
+        raise ValueError(f"{'.'.join(map(str, first['loc']))}: {first['msg']}"[:200]) from None
+    if message.n <= last:
+        raise ValueError(f"n is {message.n} after {last}: count up")
+    return message
+
+
+def in_disc(stick: Pair) -> Pair:
+    """The stick within the unit disc."""
+    x, y = (min(max(k, -1.0), 1.0) for k in stick)
+    norm = max(math.hypot(x, y), 1.0)
+    return x / norm, y / norm
