@@ -1,4 +1,4 @@
-"""A run with its console: a person takes over from the simulated operator, hands back, and leaves while a tab is open."""
+"""A run with its console: a person takes over, hands back to the simulated operator, and ends it with a tab open."""
 
 import json
 import signal
