@@ -86,8 +86,10 @@ class LioStation(Diagram):
         builder.AddNamedSystem("lio_drive", drive)
         plant.SetDefaultPositions(lio, drive.start_positions())
 
-        standing = builder.AddNamedSystem("standing", Standing(drive.GetOutputPort("actuator_state").size()))
-        self.standing: Standing = standing
+        standing = Standing(
+            desired=drive.GetInputPort("desired_state").size(), actuated=drive.GetOutputPort("actuator_state").size()
+        )
+        self.standing: Standing = builder.AddNamedSystem("standing", standing)
         sensor = builder.AddNamedSystem("lio_sensor", LioSensor(plant, lio, self.scene.X_WB))
         items = builder.AddNamedSystem("item_sensor", ItemSensor(self.scene))
         touch = builder.AddNamedSystem("contact_sensor", ContactSensor(plant, scene_graph, self.scene))
@@ -108,6 +110,7 @@ class LioStation(Diagram):
         builder.Connect(standing.GetOutputPort("contact_results"), touch.GetInputPort("contact_results"))
         for name in ("desired_state", "gripper_command"):
             builder.ExportInput(drive.GetInputPort(name), name)
+            builder.ConnectInput(name, standing.GetInputPort(name))
         for system in (sensor, items, touch):
             for k in range(system.num_output_ports()):
                 port = system.get_output_port(k)

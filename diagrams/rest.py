@@ -19,6 +19,7 @@ from pydrake.multibody.tree import ModelInstanceIndex
 from pydrake.systems.framework import Context, EventStatus
 
 from diagrams.contacts import each_contact
+from diagrams.lio_station import LioStation
 from diagrams.resting_arm import RestingArm, Standing
 from diagrams.resting_piece import STILL, make_piece
 from diagrams.scene import RigidItem
@@ -95,15 +96,16 @@ class Rest:
 
     def __call__(self, root_context: Context) -> EventStatus:
         """Look, if it is time to; `root_context` belongs to the diagram that the plant is in."""
-        called = self._arm is not None and self._arm.is_called(root_context)
+        asleep, called = (False, False) if self._arm is None else self._arm.look(root_context)
         step = round(root_context.get_time() / self._plant.time_step())
         due = root_context.get_time() >= SETTLING and not step % max(1, round(PERIOD / self._plant.time_step()))
         if not (due or called):
             return EventStatus.DidNothing()
-        stands = self._arm is not None and self._arm.stands(root_context)
         context = self._plant.GetMyContextFromRoot(root_context)
-        if stands and not self._is_awake(root_context).any():
+        stands = asleep and not called
+        if stands and not any(piece.is_awake(context) for piece in self._pieces):
             return EventStatus.DidNothing()  # nothing has moved since the last look
+        stands = stands or (self._arm is not None and self._arm.stands(root_context))
         pieces, arm = self._look(context, stands)
         self.set_awake(root_context, pieces, arm=arm)
         return EventStatus.Succeeded()
@@ -229,6 +231,17 @@ class Rest:
                 forces[i, j] = forces.get((i, j), np.zeros(3)) + force_on_a
                 forces[j, i] = -forces[i, j]
         return forces
+
+
+def rest_of(station: LioStation, *, arm: bool = True) -> Rest:
+    """What lets a station's items rest, and with `arm` the robot, too."""
+    return Rest(
+        plant=station.plant,
+        scene_graph=station.scene_graph,
+        robot=station.scene.lio,
+        items=station.scene.items,
+        standing=station.standing if arm else None,
+    )
 
 
 def _gaps(a: np.ndarray, b: np.ndarray) -> np.ndarray:

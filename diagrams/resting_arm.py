@@ -20,35 +20,47 @@ STANDS = 0.5
 ARM_STILL = 2e-3
 """[rad/s] An arm that nobody commands and that is no faster than this stands. One that presses on a table with 360 N
 creeps with 0.5 to 0.8 mrad/s; at its tool this is as much as `resting_piece.STILL`."""
-AWAKE, ASLEEP, WAKING = 0.0, 1.0, 2.0
+AWAKE, WAKING, ASLEEP, CALLED = 0.0, 1.0, 2.0, 3.0
+"""Awake; awake since the last step of the plant; asleep; asleep and told something else."""
 
 
 class Standing(LeafSystem):
     """Knows for how long the drives' command has been the same, and keeps what touched the arm while it sleeps.
 
     ```
-     actuator_state (n) → ┌──────────┐ → actuator_state (n)
-     contact_results    → │ Standing │ → contact_results
-                          └──────────┘
+      desired_state (n) → ┌──────────┐ → actuator_state (m)
+    gripper_command (1) → │ Standing │ → contact_results
+     actuator_state (m) → │          │ → stage (1)
+     contact_results    → └──────────┘
     ```
 
-    Both go through. Drake computes no force between bodies that are locked, so while the arm sleeps, and until the
-    plant has made the first step after it woke, `contact_results` are those from before: what presses, presses on.
+    The drives' command and the contacts go through. Drake computes no force between bodies that are locked, so while
+    the arm sleeps, and until the plant has made the first step after it woke, `contact_results` are those from before:
+    what presses, presses on. The drives are not asked then: their command can change only after what they are told
+    (`desired_state`, `gripper_command`), and that changes at most once a tick, not with every step of the plant.
     """
 
-    def __init__(self, size: int) -> None:
-        """For a command of `size` numbers."""
+    def __init__(self, *, desired: int, actuated: int) -> None:
+        """For a `desired_state` of n and an `actuator_state` of m numbers."""
         super().__init__()
-        self._command = self.DeclareVectorInputPort("actuator_state", size)
+        self._told = (
+            self.DeclareVectorInputPort("desired_state", desired),
+            self.DeclareVectorInputPort("gripper_command", 1),
+        )
+        self._command = self.DeclareVectorInputPort("actuator_state", actuated)
         self._contacts = self.DeclareAbstractInputPort("contact_results", Value[ContactResults]())
-        self._stage = self.DeclareDiscreteState(1)
-        # The last command and since when it has been given [s].
-        self._last = self.DeclareDiscreteState(np.full(size + 1, np.nan))
+        # The stage, then the drives' command when it was entered.
+        self._stage = self.DeclareDiscreteState(1 + actuated)
+        # What it was told last, the last command, and since when both have been given [s].
+        self._last = self.DeclareDiscreteState(np.full(desired + 1 + actuated + 1, np.nan))
         self._held = self.DeclareAbstractState(Value[ContactResults]())
         # The command depends on the stage, though its value does not: what Drake has cached of the drives' constraints
         # while the joints were free is not to be met again when they are locked (it ends the process, `CalcActuation`).
         stage = self.discrete_state_ticket(self._stage)
-        self.DeclareVectorOutputPort("actuator_state", size, self._pass_command, {self._command.ticket(), stage})
+        self.DeclareVectorOutputPort("actuator_state", actuated, self._pass_command, {self._command.ticket(), stage})
+        # A port, so that Drake knows without asking Python that nothing new was told.
+        told = {port.ticket() for port in self._told} | {self.discrete_state_ticket(self._last), stage}
+        self._calling = self.DeclareVectorOutputPort("stage", 1, self._calc_stage, told)
         # Drake keeps what computes an abstract port where the garbage collector cannot see it: it must not keep us.
         me = weakref.ref(self)
         self.DeclareAbstractOutputPort(
@@ -59,35 +71,45 @@ class Standing(LeafSystem):
         )
 
     def _pass_command(self, context: Context, output: BasicVector) -> None:
-        output.set_value(self._command.Eval(context))
+        stage = context.get_discrete_state(self._stage).value()
+        output.set_value(stage[1:] if stage.item(0) == ASLEEP else self._command.Eval(context))
+
+    def _calc_stage(self, context: Context, output: BasicVector) -> None:
+        stage = context.get_discrete_state(self._stage).value().item(0)
+        output.SetAtIndex(0, CALLED if stage == ASLEEP and self._is_told_anew(context) else stage)
 
     def _pass_contacts(self, context: Context, output: AbstractValue) -> None:
-        if self.stage(context) == AWAKE:
+        if context.get_discrete_state(self._stage).value().item(0) == AWAKE:
             output.set_value(self._contacts.Eval(context))
         else:
             output.set_value(context.get_abstract_state(int(self._held)).get_value())
 
     def stage(self, context: Context) -> float:
-        """`AWAKE`, `ASLEEP`, or `WAKING`: awake since the last step."""
-        return context.get_discrete_state(self._stage).value().item()
+        """`AWAKE`, `WAKING`, `ASLEEP` or `CALLED`."""
+        return self._calling.Eval(context).item(0)
 
     def set_stage(self, context: Context, stage: float) -> None:
-        """Change it; what touches is kept from `ASLEEP` on."""
+        """Change it; what touches, and the drives' command, is kept from `ASLEEP` on."""
         if stage == ASLEEP:
             context.SetAbstractState(int(self._held), self._contacts.Eval(context))
-        context.SetDiscreteState(int(self._stage), [stage])
-
-    def is_called(self, context: Context) -> bool:
-        """Whether the command is another than at the last `stands_for`."""
-        last = context.get_discrete_state(self._last).value().tolist()
-        return self._command.Eval(context).tolist() != last[:-1]
+        context.SetDiscreteState(int(self._stage), [stage, *self._command.Eval(context)])
 
     def stands_for(self, context: Context) -> float:
-        """How long the command has been what it is [s], as far as this has been asked."""
+        """How long the drives have been told and have commanded the same [s], as far as this has been asked."""
         now = context.get_time()
-        if self.is_called(context):
-            context.SetDiscreteState(int(self._last), np.append(self._command.Eval(context), now))
+        given = [*self._now_told(context), *self._command.Eval(context).tolist()]
+        if given != context.get_discrete_state(self._last).value().tolist()[:-1]:
+            context.SetDiscreteState(int(self._last), [*given, now])
         return now - context.get_discrete_state(self._last).value().item(-1)
+
+    def _is_told_anew(self, context: Context) -> bool:
+        """Whether the drives are told something else than at the last `stands_for`."""
+        told = self._now_told(context)
+        return told != context.get_discrete_state(self._last).value().tolist()[: len(told)]
+
+    def _now_told(self, context: Context) -> list[float]:
+        desired, gripper = self._told
+        return [*desired.Eval(context).tolist(), gripper.Eval(context).item(0)]
 
 
 class RestingArm:
@@ -99,18 +121,17 @@ class RestingArm:
 
     def is_awake(self, root: Context) -> bool:
         """Whether it is simulated."""
-        return self._standing.stage(self._standing.GetMyContextFromRoot(root)) != ASLEEP
+        return self._standing.stage(self._standing.GetMyContextFromRoot(root)) < ASLEEP
 
-    def is_called(self, root: Context) -> bool:
-        """Whether it sleeps, and is commanded; to be asked after each step of the plant.
+    def look(self, root: Context) -> tuple[bool, bool]:
+        """Whether it sleeps, and whether it is called then; to be asked after each step of the plant.
 
         The first step after it woke is also when it feels again.
         """
-        context = self._standing.GetMyContextFromRoot(root)
-        stage = self._standing.stage(context)
+        stage = self._standing.stage(self._standing.GetMyContextFromRoot(root))
         if stage == WAKING:
             self._standing.set_stage(self._standing.GetMyMutableContextFromRoot(root), AWAKE)
-        return stage == ASLEEP and self._standing.is_called(context)
+        return stage >= ASLEEP, stage == CALLED
 
     def stands(self, root: Context) -> bool:
         """Whether it could rest, for all that is known of it alone."""

@@ -11,7 +11,7 @@ import numpy as np
 from pydrake.systems.analysis import Simulator, SimulatorStatus
 from pydrake.systems.framework import Context, EventStatus
 
-from diagrams.rest import Rest
+from diagrams.rest import rest_of
 from diagrams.shared_autonomy import SharedAutonomy
 from geosacs_drake.command_line import one_line
 from geosacs_drake.failure import describe_failure
@@ -62,14 +62,7 @@ def simulate(
     """
     simulator = Simulator(system.diagram)
     simulator.set_target_realtime_rate(rate)
-    station = system.station
-    rest = Rest(
-        plant=station.plant,
-        scene_graph=station.scene_graph,
-        robot=station.scene.lio,
-        items=station.scene.items,
-        standing=station.standing,
-    )
+    rest = rest_of(system.station)
 
     def rest_and_watch(root_context: Context) -> EventStatus:
         status = rest(root_context)

@@ -62,6 +62,9 @@ def test_a_good_one(folder):
     check_model(folder / "m.urdf", [folder], carried=True)
 
 
+OUTSIDE = ("../secret.obj", "link.obj", "/etc/passwd", "out.obj", "out.gltf")
+
+
 @pytest.mark.parametrize(
     ("text", "says"),
     [
@@ -79,11 +82,7 @@ def test_a_good_one(folder):
         (sdf(MASS + box("-1 0.1 0.1")), "size '-1 0.1 0.1'"),
         (sdf(MASS + box("nan 0.1 0.1")), "size 'nan 0.1 0.1'"),
         (sdf(MASS + box("1e30 0.1 0.1")), "reaches 5e"),
-        (sdf(MASS + mesh("../secret.obj")), "outside"),
-        (sdf(MASS + mesh("link.obj")), "outside"),
-        (sdf(MASS + mesh("/etc/passwd")), "outside"),
-        (sdf(MASS + mesh("out.obj")), "outside"),
-        (sdf(MASS + mesh("out.gltf")), "outside"),
+        *((sdf(MASS + mesh(name)), "outside") for name in OUTSIDE),
         (sdf(MASS + mesh("list.gltf")), "glTF"),
         (sdf(MASS + mesh("nowhere.obj")), "does not exist"),
         (sdf(MASS + mesh("garbage.obj")), "."),

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from pydrake.systems.analysis import Simulator
 from pydrake.systems.framework import EventStatus
+from tables import high_table
 
 from canal.errors import InputError
 from diagrams.lio_drive import CLOSE_TARGET, GRIPPER_SPEED, OPEN_ANGLE, LioDrive
@@ -130,13 +131,6 @@ def test_no_joint_exceeds_its_speed_when_full_speed_is_commanded(how):
 
 def test_a_touch_is_felt():
     """The hand presses on the table in front of it: the pair that is touched feels it, the others do not."""
-
-    def high_table(scenario):
-        scenario.things[1].position = [0.36, 0.0, 0.68]
-        scenario.things = [scenario.things[0], scenario.things[1], scenario.things[3]]
-        del scenario.items[1:]
-        scenario.items[0].start.center = [0.50, 0.25, 0.98]
-
     rig = Rig(change=high_table)
     down = np.array([0, 0.0, 0.35, 0, 0.25, 0])
     rig.follow(lambda t: START_POSTURE + down * min(t, 1.0), 0.8)
