@@ -1,10 +1,10 @@
 """Where a stick's right and up point on each disk of a canal, for somebody who sees it from a given place.
 
-On a disk whose plane holds a direction within 45° of the person's right, the stick's right moves the point within 45° of
-it; likewise up. On other disks (seen edge-on from the side, or lying) the plane holds no such direction: there each axis
-of the stick goes over from the direction that it has on one side to the one that it has on the other, as slowly as it
-can, and up on a lying disk is away from the person. What is found belongs to the disk, not to the way by which it was
-reached: forth and back, the same movement of the thumb does the same.
+On a disk whose plane holds a direction within 45° of the person's right, the stick's right moves the point within 45°
+of it; likewise up. On other disks (seen edge-on from the side, or lying) the plane holds no such direction: there each
+axis of the stick goes over from the direction that it has on one side to the one that it has on the other, as slowly as
+it can, and up on a lying disk is away from the person. What is found belongs to the disk, not to the way by which it
+was reached: forth and back, the same movement of the thumb does the same.
 
 Directions are angles in planes that are carried along the canal without turning; the least sum of costs is found by
 dynamic programming, for each axis in turn with the other one fixed.

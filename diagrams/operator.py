@@ -7,13 +7,14 @@ from pydrake.math import RigidTransform
 from pydrake.systems.framework import Context, Diagram, DiagramBuilder, DiscreteValues, LeafSystem
 from pydrake.systems.primitives import DiscreteTimeDelay, Multiplexer
 
-from canal.joystick import JOYSTICK_PERIOD, JOYSTICK_SIZE
+from canal.joystick import GRIPPER, JOYSTICK_PERIOD, JOYSTICK_SIZE
 from canal.navigation import FIELD_NAMES, NavigationOptions, NavigationState
 from canal.surface import CanalSurface
 from diagrams.goals import Goal
 from diagrams.operator_options import OperatorOptions
 from diagrams.operator_policy import EYE, OperatorPolicy
 from diagrams.operator_state import Sight
+from diagrams.stick_mapping import hand_for
 
 STATE_SIZE = len(FIELD_NAMES)
 
@@ -24,7 +25,11 @@ class OperatorMind(LeafSystem):
     ```
     sight (13 n + 7 + STATE_SIZE) → OperatorMind → joystick (6)
            person_in_charge (1) →
+               stick_matrix (4) →
     ```
+
+    `stick_matrix` (optional) is how the stick is mapped, see `StickMapping`: the hand moves so that the point goes
+    where it is wanted.
 
     While `person_in_charge` (optional) is 1 the hand rests; when it falls, the person looks anew and goes on from what
     is there. `sight` is item_poses (7 n, W), item_bounds (6 n, W), X_BT (7, B) and navigation_state, in this order.
@@ -39,6 +44,7 @@ class OperatorMind(LeafSystem):
         self._delay_s, self._noise_m = delay_s, noise_m
         self._sight = self.DeclareVectorInputPort("sight", 13 * n + 7 + STATE_SIZE)
         self._person = self.DeclareVectorInputPort("person_in_charge", 1)
+        self._matrix = self.DeclareVectorInputPort("stick_matrix", 4)
         mind = self.DeclareDiscreteState(policy.initial())
         hand = self.DeclareDiscreteState(JOYSTICK_SIZE)
         self._mind, self._hand = mind, hand
@@ -55,7 +61,10 @@ class OperatorMind(LeafSystem):
         if time > self._delay_s + 2.5 * JOYSTICK_PERIOD:  # before that nothing has been sampled, and reached the eye
             mind = self._policy.decide(mind, self._look(self._sight.Eval(context), time), time)
         discrete.set_value(self._mind, mind)
-        discrete.set_value(self._hand, self._policy.joystick(mind, time))
+        joystick = self._policy.joystick(mind, time)
+        if self._matrix.HasValue(context) and joystick[:GRIPPER].any():
+            joystick[:GRIPPER] = hand_for(self._matrix.Eval(context), joystick[:GRIPPER])
+        discrete.set_value(self._hand, joystick)
 
     def _look(self, sight: np.ndarray, time: float) -> Sight:
         n = self._n
@@ -88,7 +97,7 @@ class SimulatedOperator(Diagram):
           item_poses (7 n) →  ┌───────┐    ┌───────────────────┐    ┌──────────────┐
          item_bounds (6 n) →  │ joined│ →  │ 0.25 s late, 20 Hz│ →  │ OperatorMind │ → joystick (6)
                  X_BT (7)  →  │       │    └───────────────────┘    └──────────────┘
-          navigation_state →  └───────┘                                person_in_charge (1) ↑
+          navigation_state →  └───────┘                                person_in_charge (1), stick_matrix (4) ↑
     ```
     """
 
@@ -127,7 +136,8 @@ class SimulatedOperator(Diagram):
             builder.ExportInput(joined.get_input_port(index), name)
         builder.Connect(joined.get_output_port(), late.get_input_port())
         builder.Connect(late.get_output_port(), mind.GetInputPort("sight"))
-        builder.ExportInput(mind.GetInputPort("person_in_charge"), "person_in_charge")
+        for name in ("person_in_charge", "stick_matrix"):
+            builder.ExportInput(mind.GetInputPort(name), name)
         builder.ExportOutput(mind.GetOutputPort("joystick"), "joystick")
         builder.BuildInto(self)
 

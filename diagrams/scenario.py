@@ -193,6 +193,11 @@ class Scenario:
     navigation: NavigationOptions = field(default_factory=NavigationOptions)
     ik: IkOptions = field(default_factory=IkOptions)
     operator: OperatorOptions = field(default_factory=OperatorOptions)
+    mapping: Literal["axes", "seat", "view"] | None = None
+    """What the stick's right and up are: the correction axes (the paper), or right and up as seen from the seat or by
+    the camera. None: from the seat in the console, else the axes."""
+    seat: Literal["front", "left", "right", "behind"] = "front"
+    """Where the person sits, seen from the robot."""
     monitor: MonitorOptions = field(default_factory=MonitorOptions)
     control_rate_hz: Annotated[float, Field(ge=1, le=1000)] = 60.0
     """Of navigator, IK and monitor (paper: 20 Hz): three ticks in a sample of the stick. At 40 Hz the tool keeps within

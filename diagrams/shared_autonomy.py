@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Literal
 
+import numpy as np
 from pydrake.geometry import Meshcat, MeshcatVisualizer, MeshcatVisualizerParams
 from pydrake.systems.framework import Context, Diagram, DiagramBuilder, OutputPort
 from pydrake.systems.primitives import ZeroOrderHold
@@ -34,6 +35,7 @@ from diagrams.run_log import RunLog
 from diagrams.scenario import Scenario
 from diagrams.soft_view import SoftView
 from diagrams.start_posture import StartPosture, find_start_posture
+from diagrams.stick_mapping import StickMapping
 
 
 @dataclass(frozen=True)
@@ -72,6 +74,8 @@ def build_shared_autonomy(
     say: Callable[[Announcement], None] | None = None,
     show: Callable[[str, str, float], None] | None = None,
     hand: Callable[[], LiveSample] | None = None,
+    directions: np.ndarray | None = None,
+    choose_directions: Callable[[], tuple[int, np.ndarray | None]] | None = None,
 ) -> SharedAutonomy:
     """Wire a scenario and a canal into a diagram.
 
@@ -93,6 +97,9 @@ def build_shared_autonomy(
         show: shows what lasts of it, instead of a notice in `meshcat`; see `Announcer`.
         hand: a person's joystick, who may hand back to the simulated operator; instead of the Meshcat page, which then
             takes no commands.
+        directions: of the stick's right and up on each disk, for whoever drives but a recording; None: the correction
+            axes. Shape (N, 2, 3).
+        choose_directions: tells of other ones while it runs; see `StickMapping`.
 
     Raises:
         InputError: the scenario's things overlap, or the arm cannot reach the canal's home.
@@ -134,6 +141,21 @@ def build_shared_autonomy(
         holds.append(hold)
         measured[name] = hold.get_output_port()
 
+    def mapped(port: OutputPort, name: str) -> tuple[OutputPort, OutputPort | None]:
+        """A joystick along the correction axes, and the matrix that it was mapped by."""
+        if directions is None and choose_directions is None:
+            return port, None
+        mapping = StickMapping.AddToBuilder(
+            builder=builder,
+            canal=canal,
+            directions=directions,
+            choose=choose_directions,
+            joystick=port,
+            navigation_state=navigator.GetOutputPort("navigation_state"),
+            name=name,
+        )
+        return mapping.GetOutputPort("mapped_joystick"), mapping.GetOutputPort("matrix")
+
     person: LiveJoystick | MeshcatJoystick | None = None
     if hand is not None:
         person = LiveJoystick.AddToBuilder(builder=builder, read=hand)
@@ -158,11 +180,16 @@ def build_shared_autonomy(
         source = None
     else:
         source = RecordedJoystick.AddToBuilder(builder=builder, recording=operator)
+    simulated = None if source is None else source.GetOutputPort("joystick")
+    if isinstance(source, SimulatedOperator):
+        simulated, matrix = mapped(source.GetOutputPort("joystick"), "operator_mapping")
+        if matrix is not None:
+            builder.Connect(matrix, source.GetInputPort("stick_matrix"))
     selector = JoystickSelector.AddToBuilder(
         builder=builder,
-        person=None if person is None else person.GetOutputPort("joystick"),
+        person=None if person is None else mapped(person.GetOutputPort("joystick"), "stick_mapping")[0],
         person_in_charge=person.GetOutputPort("in_charge") if isinstance(person, LiveJoystick) else None,
-        simulated=None if source is None else source.GetOutputPort("joystick"),
+        simulated=simulated,
         simulated_person_in_charge=(
             source.GetOutputPort("person_in_charge") if isinstance(source, RecordedJoystick) else None
         ),

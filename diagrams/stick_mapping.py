@@ -15,7 +15,7 @@ from diagrams.joystick import clean_joystick
 
 DISK = FIELD_NAMES.index("disk")
 SMALLEST = 0.1
-"""Sine between the two directions below which they are not told apart: what a hand would have to do grows with 1/sine."""
+"""Ratio of the matrix's singular values below which its directions are not told apart."""
 
 
 class StickMapping(LeafSystem):

@@ -48,6 +48,11 @@ class RunOptions:
     console: bool = True
     """The operator's console: one page with the robot, a joystick, and what the robot does. --no-console leaves
     Meshcat's page alone."""
+    mapping: Literal["axes", "seat", "view"] | None = None
+    """What the stick's right and up are: the canal's correction axes, as in the paper, or right and up as seen from the
+    seat, or by the camera. Default: as the scenario says; from the seat in the console."""
+    seat: Literal["front", "left", "right", "behind"] | None = None
+    """Where the person sits, seen from the robot. Default: as the scenario says; front."""
     host: str = "localhost"
     """Address at which the console listens. 0.0.0.0 lets every machine of the network that knows its address steer the
     robot: for a tablet, in a network that you trust."""

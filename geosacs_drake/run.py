@@ -10,6 +10,7 @@ from typing import NoReturn
 from pydrake.geometry import Meshcat
 from tqdm import tqdm
 
+from canal.stick_directions import stick_directions
 from canal.surface import CanalSurface
 from diagrams.announcements import Announcement
 from diagrams.joystick_recording import load_recording
@@ -21,6 +22,7 @@ from diagrams.scenario import Scenario, load_scenario, with_items
 from diagrams.shared_autonomy import build_shared_autonomy
 from geosacs_drake.command_line import ExitStatus, end, parse_options, status_of
 from geosacs_drake.console.console import Console
+from geosacs_drake.console.mapping_choice import chosen_view
 from geosacs_drake.interrupts import Interrupts, Phase
 from geosacs_drake.options import PEOPLE, RunOptions
 from geosacs_drake.prepare_canal import prepare_task
@@ -89,6 +91,10 @@ def _run(
         recorded = start_meshcat(X_WB=base_pose(scenario.robot), hidden=True)
         recording = Recording(recorded, title=scenario.description or scenario.task)
     operator = operator_of(options)
+    mapping = options.mapping or scenario.mapping or ("axes" if console is None else "seat")
+    seat = options.seat or scenario.seat
+    view = chosen_view(mapping, seat)
+    choice = None if console is None else console.choose_mapping(canal, mapping, seat)
     system = build_shared_autonomy(
         scenario=scenario,
         canal=canal,
@@ -100,6 +106,8 @@ def _run(
         say=_tell_both(console),
         show=None if console is None else console.show_standing,
         hand=None if console is None else console.control.sample,
+        directions=choice.current()[1] if choice else stick_directions(canal, view) if view else None,
+        choose_directions=None if choice is None else choice.current,
     )
     for notice in system.notices:
         print(notice, file=sys.stderr, flush=True)

@@ -10,6 +10,7 @@ from collections.abc import Callable
 from typing import Any
 
 from pydrake.geometry import Meshcat
+from pydrake.math import RollPitchYaw
 
 from canal.joystick import JOYSTICK_PERIOD
 from canal.surface import CanalSurface
@@ -18,6 +19,7 @@ from diagrams.scenario import Scenario
 from diagrams.shared_autonomy import SharedAutonomy
 from geosacs_drake.console.control import Control
 from geosacs_drake.console.link import Answers
+from geosacs_drake.console.mapping_choice import MappingChoice, chosen_view
 from geosacs_drake.console.server import ConsoleServer
 from geosacs_drake.console.status import StatusReporter
 
@@ -54,6 +56,7 @@ class Console:
         )
         self._person = person
         self._standing = ""
+        self._mapping, self._seat = "axes", "front"
         self.server.start()
 
     @property
@@ -81,6 +84,12 @@ class Console:
         """What holds now."""
         return self._standing
 
+    def choose_mapping(self, canal: CanalSurface, mapping: str, seat: str) -> MappingChoice:
+        """Begin with a mapping of the stick; pages may choose another."""
+        self._mapping, self._seat = mapping, seat
+        self.answers.mapping = MappingChoice(canal, chosen_view(mapping, seat))
+        return self.answers.mapping
+
     def report(self, system: SharedAutonomy, canal: CanalSurface, scenario: Scenario) -> StatusReporter:
         """Tell the pages of a run; call what is returned after each step of it."""
         navigation = scenario.navigation
@@ -90,6 +99,9 @@ class Console:
             "description": scenario.description or scenario.task,
             "full_stick_mm": self.answers.full_stick_mm,
             "disks": canal.n_disks,
+            "mapping": self._mapping,
+            "seat": self._seat,
+            "base_yaw": float(RollPitchYaw(system.station.X_WB.rotation()).yaw_angle()),
         }
         return StatusReporter(
             system=system,

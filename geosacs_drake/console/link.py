@@ -7,6 +7,7 @@ import math
 from collections.abc import Callable
 
 from geosacs_drake.console.control import Control
+from geosacs_drake.console.mapping_choice import MappingChoice, chosen_view
 from geosacs_drake.console.messages import AnyMessage, Bindings, Drive, Press, Say, Seen, Step, View, in_disc
 
 
@@ -64,6 +65,8 @@ class Link:
                 if number in self._told:
                     self.delay_ms = 1000 * (now_s - self._told.pop(number))
                 return ""
+            case View() if control.situation().holder not in ("", self.name):
+                return ""
             case View():
                 return self.answers.change_view(self.name, message)
             case Bindings(name=name, bindings=bindings):
@@ -78,6 +81,8 @@ class Answers:
 
     full_stick_mm: float = 20.0 / 150.0 * 50.0
     """What a full stick moves in one sample of 20 Hz [mm]."""
+    mapping: MappingChoice | None = None
+    """Gets the pages' choices."""
     on_word: Callable[[str, str], str] = staticmethod(lambda page, word: "")
 
     def step_samples(self, direction: tuple[float, float], mm: float) -> list[tuple[float, float]]:
@@ -90,7 +95,9 @@ class Answers:
         return [(k * direction[0], k * direction[1])] * samples
 
     def change_view(self, page: str, view: View) -> str:
-        """A page has chosen how the stick is mapped."""
+        """A page has chosen how the stick is mapped: the one in control, or any where nobody is."""
+        if self.mapping is not None:
+            self.mapping.ask(chosen_view(view.mapping, view.seat, view.right, view.up))
         return ""
 
     def keep_bindings(self, name: str, bindings: dict) -> str:
