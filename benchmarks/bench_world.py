@@ -11,6 +11,7 @@ import multiprocessing
 import time
 from collections.abc import Callable
 from concurrent.futures import ProcessPoolExecutor
+from dataclasses import replace
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -150,7 +151,7 @@ def watched_run(
         scenario = with_items(scenario, kind)
     canal = prepare_canal(scenario, RunOptions(headless=True))
     if not orientation:
-        canal = canal.with_(orientation_weights=np.zeros(canal.n_disks))
+        canal = replace(canal, orientation_weights=np.zeros(canal.n_disks))
         scenario.monitor.force_limit_n = math.inf
     system = build_shared_autonomy(scenario=scenario, canal=canal, seed=seed)
     watch = Watch(system)

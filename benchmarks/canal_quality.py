@@ -18,7 +18,7 @@ from canal.learning import learn_canal
 from canal.learning_options import LearningOptions
 from canal.quality import canal_quality, deviations, undershoot
 from canal.refinement import SupportPlane, dips
-from canal.retargeting import shape_cost
+from canal.retargeting import retarget, shape_cost
 from canal.surface import CanalSurface
 from canal.surface_file import SHAPES
 from models import MODELS
@@ -171,7 +171,7 @@ def of_retargeting(n: int = 40) -> list[Figure]:
                     canal.directrix[disk] + 0.3 * rng.random() ** (1 / 3) * shift / np.linalg.norm(shift),
                     (turned * old).as_quat(scalar_first=True),
                 )
-            bent = canal.retarget(**poses)
+            bent = retarget(canal, **poses)
             ratios.append(shape_cost(canal, bent).curvature_ratio)
             quality = canal_quality(bent)
             crossing, tilt = max(crossing, quality.n_crossing), max(tilt, quality.tilt_max)

@@ -11,11 +11,13 @@ from scipy.spatial.transform import Rotation
 
 from benchmarks.canal_quality import WAYS, Hardness, hard_demonstrations
 from benchmarks.fuzz_options import random_options
+from canal.editing import add_demonstration, cut, join, reverse
 from canal.errors import InputError
 from canal.learning import LearningOptions, learn_canal
 from canal.refinement import SupportPlane
+from canal.retargeting import retarget
 from canal.surface import CanalSurface
-from canal.surface_file import SHAPES
+from canal.surface_file import SHAPES, load_canal, save_canal
 from canal.tour import tour
 
 ROUNDING = 1e-9
@@ -113,8 +115,8 @@ def saved_and_loaded(canal: CanalSurface) -> None:
     """A file gives back a canal bit for bit."""
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "c.npz"
-        canal.save(path)
-        again = CanalSurface.load(path)
+        save_canal(path, canal)
+        again = load_canal(path)
     for name in (*SHAPES, "x_global"):
         assert np.array_equal(getattr(canal, name), getattr(again, name)), f"{name} changes on its way to a file"
     assert canal.moving_time_s == again.moving_time_s
@@ -126,12 +128,12 @@ def saved_and_loaded(canal: CanalSurface) -> None:
 
 def _cut(canal: CanalSurface, rng: np.random.Generator) -> CanalSurface:
     first, last = np.sort(rng.uniform(0, canal.n_disks - 1, 2)).tolist()
-    return canal.cut(first, last)
+    return cut(canal, first, last)
 
 
 def _join(canal: CanalSurface, rng: np.random.Generator) -> CanalSurface:
     at = float(rng.uniform(0.2, 0.8)) * (canal.n_disks - 1)
-    return canal.cut(0, at).join(canal.cut(min(at + float(rng.uniform(0, 3)), canal.n_disks - 3), canal.n_disks - 1))
+    return join(cut(canal, 0, at), cut(canal, min(at + float(rng.uniform(0, 3)), canal.n_disks - 3), canal.n_disks - 1))
 
 
 def _add(canal: CanalSurface, rng: np.random.Generator) -> CanalSurface:
@@ -141,7 +143,7 @@ def _add(canal: CanalSurface, rng: np.random.Generator) -> CanalSurface:
         from canal.demonstration import Demonstration
 
         demonstrations = [Demonstration(own, canal.demonstration_orientations[0], name="one more")]
-    return canal.add_demonstration(demonstrations[0])
+    return add_demonstration(canal, demonstrations[0])
 
 
 def _retarget(canal: CanalSurface, rng: np.random.Generator) -> CanalSurface:
@@ -154,11 +156,11 @@ def _retarget(canal: CanalSurface, rng: np.random.Generator) -> CanalSurface:
             old = Rotation.from_quat(canal.orientations[disk], scalar_first=True)
             moved = canal.directrix[disk] + 0.3 * rng.random() * shift / np.linalg.norm(shift)
             poses[name] = (moved, (turn * old).as_quat(scalar_first=True))
-    return canal.retarget(**poses)
+    return retarget(canal, **poses)
 
 
 EDITS: dict[str, Callable[[CanalSurface, np.random.Generator], CanalSurface]] = {
-    "reverse": lambda canal, rng: canal.reverse(),
+    "reverse": lambda canal, rng: reverse(canal),
     "cut": _cut,
     "join": _join,
     "add": _add,

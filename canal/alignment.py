@@ -99,7 +99,7 @@ def align_to(
     _refuse_opposite([replace(motion, position=reference, name="the canal"), motion])
     m = len(reference)
     path = warping_path(reference, motion.position, band)
-    return _smoothed(_along(path, path[:, 0], m)[1:], smoothing * m)[0]
+    return np.asarray(_smoothed(_along(path, path[:, 0], m)[1:], smoothing * m)[0])
 
 
 def sample(values: np.ndarray, at: np.ndarray) -> np.ndarray:

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Literal
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from canal.errors import InputError
 from canal.files import write_and_rename, write_npz
@@ -70,7 +71,7 @@ class Demonstration:
     dropped: int = 0
     lines: np.ndarray | None = None
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         position = _as_floats(self.position, "position", self.name)
         orientation = _as_floats(self.orientation, "orientation", self.name)
         if position.ndim != 2 or position.shape[1] != 3:
@@ -138,14 +139,14 @@ class Demonstration:
         return float(self.time[-1] - self.time[0])
 
 
-def _as_floats(values, label: str, name: str) -> np.ndarray:
+def _as_floats(values: ArrayLike, label: str, name: str) -> np.ndarray:
     try:
         return np.array(values, dtype=float)
     except (TypeError, ValueError):
         raise InputError(f"{name}: {label} is not an array of numbers") from None
 
 
-def load_demonstration(path: str | os.PathLike, recorded: RecordingFormat = AS_OURS) -> Demonstration:
+def load_demonstration(path: str | os.PathLike[str], recorded: RecordingFormat = AS_OURS) -> Demonstration:
     """Read a demonstration from `.npz` (`position`, `orientation`, optionally `time`) or `.csv`.
 
     A CSV has the header `t,x,y,z,qw,qx,qy,qz`, in any order. Nothing is ever unpickled.
@@ -203,7 +204,7 @@ def _without_bad_samples(
     return position[good], orientation[good], clock[good], int(n - good.sum())
 
 
-def save_demonstration(path: str | os.PathLike, demonstration: Demonstration) -> None:
+def save_demonstration(path: str | os.PathLike[str], demonstration: Demonstration) -> None:
     """Write a demonstration as `.npz` (or `.csv`, by the suffix), to a temporary file that is then renamed."""
     path = Path(path)
     d = demonstration

@@ -33,7 +33,7 @@ def reverse(canal: CanalSurface) -> CanalSurface:
     changes |= {name: getattr(canal, name)[:, ::-1] for name in ("demonstrations", "demonstration_orientations")}
     if canal.ellipses is not None:
         changes["ellipses"] = canal.ellipses[::-1]
-    return canal.with_(**changes)
+    return replace(canal, **changes)
 
 
 def cut(canal: CanalSurface, first: float, last: float) -> CanalSurface:
@@ -120,7 +120,7 @@ def join(first: CanalSurface, second: CanalSurface) -> CanalSurface:
     if differ:
         told = ", ".join(f"{key} {getattr(second.options, key)} instead of {getattr(common, key)}" for key in differ)
         line = f"the second of the joined canals was learned with {told}: the first's is used for both"
-        joined = joined.with_(warnings=(*joined.warnings, line))
+        joined = replace(joined, warnings=(*joined.warnings, line))
     return joined
 
 
@@ -168,7 +168,7 @@ def with_support_planes(canal: CanalSurface, planes: tuple[SupportPlane, ...]) -
         widening=np.maximum(canal.radii - ball - learned.margin, 0.0),
     )
     kept = ("directrix", "radii", "orientations", "orientation_sd", "orientation_weights", "options")
-    return refined.with_(**{name: getattr(canal, name) for name in kept})
+    return replace(refined, **{name: getattr(canal, name) for name in kept})
 
 
 def rebuild(
@@ -232,7 +232,7 @@ def beyond_data(canal: CanalSurface, at: np.ndarray, margin: float | None = None
     """What a canal's radii hold beyond its data and a margin (its own if None) at continuous disks, [m]."""
     ball = np.linalg.norm(canal.demonstrations - canal.directrix, axis=2).max(axis=0)
     margin = canal.options.margin if margin is None else margin
-    return np.interp(at, np.arange(canal.n_disks), np.maximum(canal.radii - ball - margin, 0.0))
+    return np.asarray(np.interp(at, np.arange(canal.n_disks), np.maximum(canal.radii - ball - margin, 0.0)))
 
 
 def _repeated(canal: CanalSurface, n: int) -> tuple[np.ndarray, np.ndarray]:
@@ -241,4 +241,4 @@ def _repeated(canal: CanalSurface, n: int) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _unit(rows: np.ndarray) -> np.ndarray:
-    return rows / np.linalg.norm(rows, axis=1, keepdims=True)
+    return np.asarray(rows / np.linalg.norm(rows, axis=1, keepdims=True))

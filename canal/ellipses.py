@@ -58,4 +58,4 @@ def _scaled(narrow: np.ndarray, roundness: np.ndarray, points: np.ndarray) -> np
     t = roundness[:, None, None]
     form = (1.0 - t) * narrow + t * np.eye(2)
     reach = np.einsum("nsi,sij,nsj->ns", points, form, points).max(axis=0)
-    return form / np.maximum(reach, 1e-12)[:, None, None]
+    return np.asarray(form / np.maximum(reach, 1e-12)[:, None, None])

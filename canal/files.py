@@ -25,7 +25,7 @@ _unfinished: set[Path] = set()
 """Temporary files that are being written."""
 
 
-def write_npz(path: str | os.PathLike, **arrays: np.ndarray) -> None:
+def write_npz(path: str | os.PathLike[str], **arrays: np.ndarray) -> None:
     """Write arrays to an `.npz`: a reader sees the old file or the whole new one, never half of it."""
     write_and_rename(Path(path), lambda stream: np.savez_compressed(stream, allow_pickle=False, **arrays))
 

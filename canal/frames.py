@@ -143,7 +143,7 @@ def project(vector: np.ndarray, normal: np.ndarray) -> np.ndarray:
         return perpendicular(normal)
     across = across / size
     across = across - (across @ normal) * normal  # once more, for vectors nearly along the normal
-    return across / math.sqrt(across @ across)
+    return np.asarray(across / math.sqrt(across @ across))
 
 
 def perpendicular(normal: np.ndarray) -> np.ndarray:
@@ -151,4 +151,4 @@ def perpendicular(normal: np.ndarray) -> np.ndarray:
     across = np.zeros(3)
     across[int(np.argmin(np.abs(normal)))] = 1.0
     across = across - (across @ normal) * normal
-    return across / np.linalg.norm(across)
+    return np.asarray(across / np.linalg.norm(across))

@@ -15,7 +15,7 @@ from canal.ellipses import FEWEST_FOR_ELLIPSES, disk_ellipses
 from canal.errors import InputError
 from canal.frames import correction_frames, perpendicular
 from canal.learning_options import MEASURED, LearningOptions
-from canal.refinement import dips, hold_at_planes
+from canal.refinement import SupportPlane, dips, hold_at_planes
 from canal.relaxation import MAX_TILT, continuous_directions, crossings, relax_normals, reversals, tilts
 from canal.splines import arc_length, fit_spline, knots_every, rotation_curve, uniform_in_arc
 from canal.surface import CanalSurface
@@ -109,7 +109,7 @@ def unit_tangents(derivatives: np.ndarray) -> np.ndarray:
     size = np.linalg.norm(derivatives, axis=1)
     known = size > 1e-9 * size.max()
     nearest = np.maximum.accumulate(np.where(known, np.arange(len(size)), int(np.argmax(known))))
-    return derivatives[nearest] / size[nearest, None]
+    return np.asarray(derivatives[nearest] / size[nearest, None])
 
 
 def build_surface(
@@ -233,7 +233,13 @@ def _tool_axis_across(quaternion: np.ndarray, normal: np.ndarray) -> np.ndarray:
     return axes[int(np.argmin(along))] if along.min() < 0.9 else perpendicular(normal)
 
 
-def _warnings(centres, tangents, normals, radii, planes) -> tuple[str, ...]:
+def _warnings(
+    centres: np.ndarray,
+    tangents: np.ndarray,
+    normals: np.ndarray,
+    radii: np.ndarray,
+    planes: tuple[SupportPlane, ...],
+) -> tuple[str, ...]:
     lines = []
     length = float(np.sum(np.linalg.norm(np.diff(centres, axis=0), axis=1)))
     if length < SHORT_M:

@@ -7,7 +7,7 @@ import reprlib
 import textwrap
 import typing
 from collections.abc import Callable, Sequence
-from typing import Annotated, Any, dataclass_transform
+from typing import Annotated, Any, cast, dataclass_transform
 
 import pydantic
 import pydantic.dataclasses
@@ -62,7 +62,7 @@ def options[T: type](where: str = "", *, frozen: bool = False) -> Callable[[T], 
 
         __init__.__wrapped__ = check  # type: ignore[attr-defined]
         made.__init__ = __init__
-        return made
+        return cast(T, made)
 
     return decorate
 

@@ -70,7 +70,7 @@ def presses_along(canal: CanalSurface, state: NavigationState, way: int) -> bool
     into = way * sum(c * p for c, p in zip(chord, _press(state), strict=True))
     if abs(into) <= GLANCING * math.hypot(*chord):
         return way == state.press_way
-    return into > 0
+    return bool(into > 0)
 
 
 def cut_stick(canal: CanalSurface, state: NavigationState, stick: tuple[float, float]) -> tuple[float, float]:

@@ -77,7 +77,7 @@ def canal_quality(canal: CanalSurface) -> CanalQuality:
 
 def angles(a: np.ndarray, b: np.ndarray) -> np.ndarray:
     """Angle between unit vectors, row by row, [degrees]. Shape (N,)."""
-    return np.degrees(2 * np.arctan2(np.linalg.norm(a - b, axis=1), np.linalg.norm(a + b, axis=1)))
+    return np.asarray(np.degrees(2 * np.arctan2(np.linalg.norm(a - b, axis=1), np.linalg.norm(a + b, axis=1))))
 
 
 def step_ratio(canal: CanalSurface, eta: float = _RATIO) -> float:

@@ -22,7 +22,7 @@ _BOMS = ((b"\xff\xfe", "utf-16"), (b"\xfe\xff", "utf-16"))
 
 
 @contextmanager
-def reading(path: str | os.PathLike, what: str) -> Iterator[None]:
+def reading(path: str | os.PathLike[str], what: str) -> Iterator[None]:
     """The one place where whatever a file makes its reader raise becomes a line.
 
     Args:
@@ -46,7 +46,7 @@ def reading(path: str | os.PathLike, what: str) -> Iterator[None]:
         raise InputError(f"{path}: cannot be read, damaged or of another kind ({why}); give {what}") from None
 
 
-def open_file(path: str | os.PathLike, what: str) -> io.BufferedReader:
+def open_file(path: str | os.PathLike[str], what: str) -> io.BufferedReader:
     """A regular file that is there, is not empty and not too large, open for reading. Pipes and devices would hang.
 
     Raises:
@@ -65,7 +65,7 @@ def open_file(path: str | os.PathLike, what: str) -> io.BufferedReader:
     return open(path, "rb")
 
 
-def read_npz(path: str | os.PathLike, what: str, keys: Collection[str] | None = None) -> dict[str, np.ndarray]:
+def read_npz(path: str | os.PathLike[str], what: str, keys: Collection[str] | None = None) -> dict[str, np.ndarray]:
     """Arrays of an `.npz`, never unpickling, never making an array larger than what the file holds.
 
     Args:
@@ -138,7 +138,7 @@ def as_numbers(array: np.ndarray, label: str) -> np.ndarray:
         return array.astype(float)
 
 
-def read_csv(path: str | os.PathLike, what: str, columns: Sequence[str]) -> tuple[np.ndarray, np.ndarray]:
+def read_csv(path: str | os.PathLike[str], what: str, columns: Sequence[str]) -> tuple[np.ndarray, np.ndarray]:
     """A table of numbers with commas between them and the names of its columns, in any order, in the first line.
 
     Args:
@@ -174,7 +174,7 @@ def read_csv(path: str | os.PathLike, what: str, columns: Sequence[str]) -> tupl
         return table, np.array([number for number, _ in rows[1:]], dtype=int)
 
 
-def _header(path, found: list[str], text: str, columns: Sequence[str]) -> list[int]:
+def _header(path: str | os.PathLike[str], found: list[str], text: str, columns: Sequence[str]) -> list[int]:
     """Where each of `columns` is among the names that were found."""
     while found and not found[-1]:
         found = found[:-1]
@@ -197,7 +197,7 @@ def _header(path, found: list[str], text: str, columns: Sequence[str]) -> list[i
     )
 
 
-def _number(path, line: int, cell: str) -> float:
+def _number(path: str | os.PathLike[str], line: int, cell: str) -> float:
     if not cell:
         return np.nan
     try:

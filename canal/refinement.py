@@ -36,13 +36,13 @@ class SupportPlane:
 
     def height(self, points: np.ndarray) -> np.ndarray:
         """Signed distance of points (..., 3) from the plane, positive where they may be, [m]."""
-        return points @ np.asarray(self.normal) - self.offset
+        return np.asarray(points @ np.asarray(self.normal) - self.offset)
 
 
 def dips(points: np.ndarray, normals: np.ndarray, radii: np.ndarray, plane: SupportPlane) -> np.ndarray:
     """How far each disk's lowest rim point lies beyond a plane (positive: it dips), [m]. Shape (N,)."""
     along = normals @ np.asarray(plane.normal)
-    return radii * np.sqrt(np.maximum(0.0, 1.0 - along**2)) - plane.height(points)
+    return np.asarray(radii * np.sqrt(np.maximum(0.0, 1.0 - along**2)) - plane.height(points))
 
 
 def hold_at_planes(

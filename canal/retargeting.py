@@ -112,12 +112,12 @@ def retarget(
     warnings = bent.warnings
     if cost.curvature_ratio > WARN_CURVATURE or cost.stretch_max > WARN_STRETCH:
         warnings += (f"bent to its new ends at a cost: {cost}",)
-    return bent.with_(orientation_weights=old_weights, warnings=warnings)
+    return replace(bent, orientation_weights=old_weights, warnings=warnings)
 
 
 def _level(x: np.ndarray) -> np.ndarray:
     """From 0 to 1, starting and ending level."""
-    return x * x * (3.0 - 2.0 * x)
+    return np.asarray(x * x * (3.0 - 2.0 * x))
 
 
 def _bend(x: np.ndarray, bending: np.ndarray) -> Rotation:
@@ -141,7 +141,7 @@ def _least_bending(x: np.ndarray, steps: np.ndarray, reach: np.ndarray) -> tuple
     price = np.concatenate([np.repeat((np.pi * np.arange(1, _MODES + 1)) ** 2 / 2, 3), [_STRETCH_PRICE]])
 
     def end(z: np.ndarray) -> np.ndarray:
-        return np.exp(z[-1]) * _bend(x, z[:-1].reshape(_MODES, 3)).apply(steps).sum(axis=0)
+        return np.asarray(np.exp(z[-1]) * _bend(x, z[:-1].reshape(_MODES, 3)).apply(steps).sum(axis=0))
 
     z = np.zeros(size)
     for _ in range(_MOST_STEPS):
@@ -180,7 +180,9 @@ def _peak_curvature(canal: CanalSurface) -> float:
     return float(np.convolve(curvature(canal), np.full(width, 1.0 / width), mode="valid").max())
 
 
-def _target(pose, name: str, position: np.ndarray, quaternion: np.ndarray) -> tuple[np.ndarray, Rotation]:
+def _target(
+    pose: ArrayLike | tuple[ArrayLike, ArrayLike] | None, name: str, position: np.ndarray, quaternion: np.ndarray
+) -> tuple[np.ndarray, Rotation]:
     """New position, and the rotation from the old orientation to the new one."""
     if pose is None:
         return position, Rotation.identity()
@@ -201,7 +203,7 @@ def _target(pose, name: str, position: np.ndarray, quaternion: np.ndarray) -> tu
 
 
 def _turned(turns: Rotation, quaternions: np.ndarray) -> np.ndarray:
-    return (turns * Rotation.from_quat(quaternions, scalar_first=True)).as_quat(scalar_first=True)
+    return np.asarray((turns * Rotation.from_quat(quaternions, scalar_first=True)).as_quat(scalar_first=True))
 
 
 def _at(at: np.ndarray, grid: np.ndarray, rows: np.ndarray) -> np.ndarray:

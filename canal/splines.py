@@ -84,7 +84,7 @@ def uniform_in_arc(curve: CubicSpline, n: int, u_arc: tuple[np.ndarray, np.ndarr
     inverse = PchipInterpolator(arc[grows], u[grows])
     at = inverse(np.linspace(0.0, arc[grows][-1], n))
     at[0], at[-1] = 0.0, 1.0
-    return np.clip(at, 0.0, 1.0)
+    return np.asarray(np.clip(at, 0.0, 1.0))
 
 
 def rotation_curve(knots: np.ndarray, quaternions: np.ndarray, at: np.ndarray) -> np.ndarray:
@@ -110,7 +110,7 @@ def rotation_curve(knots: np.ndarray, quaternions: np.ndarray, at: np.ndarray) -
     points = [control[segment, k] for k in range(4)]
     while len(points) > 1:
         points = [slerp(a, b, t) for a, b in pairwise(points)]
-    return points[0]
+    return np.asarray(points[0])
 
 
 def slerp(a: np.ndarray, b: np.ndarray, t: np.ndarray) -> np.ndarray:
@@ -120,4 +120,4 @@ def slerp(a: np.ndarray, b: np.ndarray, t: np.ndarray) -> np.ndarray:
     first = np.where(angle > 1e-8, np.sin((1 - t) * angle) / np.sin(safe), 1 - t)
     second = np.where(angle > 1e-8, np.sin(t * angle) / np.sin(safe), t)
     blend = first[:, None] * a + second[:, None] * b
-    return blend / np.linalg.norm(blend, axis=1, keepdims=True)
+    return np.asarray(blend / np.linalg.norm(blend, axis=1, keepdims=True))

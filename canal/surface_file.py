@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from typing import TYPE_CHECKING
+from typing import Any
 
 import numpy as np
 
@@ -12,10 +12,8 @@ from canal.files import write_npz
 from canal.learning_options import MEASURED, LearningOptions, from_json, to_json
 from canal.reading import as_numbers, read_npz
 from canal.refinement import SupportPlane
+from canal.surface import CanalSurface
 from canal.trimming import continuous_signs
-
-if TYPE_CHECKING:
-    from canal.surface import CanalSurface
 
 FORMAT_VERSION = 1
 SHAPES = {  # of the arrays every file has; N disks, n demonstrations
@@ -40,8 +38,19 @@ _UNIT = ("tangents", "normals", "x_axes", "y_axes", "orientations", "demonstrati
 _AGAIN = "make the file again with learn -o"
 
 
-def save_canal(canal: CanalSurface, path: str | os.PathLike) -> None:
-    """Write a canal by way of a temporary file."""
+Path = str | os.PathLike[str]
+
+
+def save_canal(path: Path, canal: CanalSurface) -> None:
+    """Write a canal by way of a temporary file; `load_canal` gives it back bit for bit.
+
+    Args:
+        path: of the `.npz`.
+        canal: any.
+
+    Raises:
+        InputError: the file cannot be written.
+    """
     arrays = {key: getattr(canal, key) for key in SHAPES}
     arrays["moving_time_s"] = np.array(canal.moving_time_s)
     arrays["format_version"] = np.array(FORMAT_VERSION)
@@ -54,8 +63,8 @@ def save_canal(canal: CanalSurface, path: str | os.PathLike) -> None:
     write_npz(path, **arrays)
 
 
-def read_canal_fields(path: str | os.PathLike) -> dict:
-    """The fields of a `CanalSurface` from a file.
+def load_canal(path: Path) -> CanalSurface:
+    """Read a canal written by `save_canal`, or by any program that writes the documented arrays.
 
     Raises:
         InputError: it is not a canal file, with what is missing or wrong.
@@ -79,17 +88,18 @@ def read_canal_fields(path: str | os.PathLike) -> dict:
         rows = numbers[key].reshape(-1, *numbers[key].shape[-2:])
         numbers[key] = np.stack([continuous_signs(row) for row in rows]).reshape(numbers[key].shape)
     planes = numbers.get("support_planes", np.empty((0, 4))).tolist()
-    return {key: numbers[key] for key in SHAPES} | {
-        "moving_time_s": float(numbers["moving_time_s"]),
-        "ellipses": numbers.get("ellipses"),
-        "support_planes": tuple(SupportPlane((a, b, c), d) for a, b, c, d in planes),
-        "x_global": numbers.get("x_global"),
-        "warnings": tuple(str(line) for line in warnings.ravel()),
-        "options": _options(path, learned),
-    }
+    more: dict[str, Any] = {key: numbers[key] for key in ("ellipses", "x_global") if key in numbers}
+    return CanalSurface(
+        **{key: numbers[key] for key in SHAPES},
+        moving_time_s=float(numbers["moving_time_s"]),
+        support_planes=tuple(SupportPlane((a, b, c), d) for a, b, c, d in planes),
+        warnings=tuple(str(line) for line in warnings.ravel()),
+        options=_options(path, learned),
+        **more,
+    )
 
 
-def _options(path, learned: np.ndarray) -> LearningOptions:
+def _options(path: Path, learned: np.ndarray) -> LearningOptions:
     """The options in a file; the defaults in one that has none, made elsewhere or before files had them."""
     try:
         return from_json(str(learned[()])) if learned.size == 1 else MEASURED
@@ -97,7 +107,7 @@ def _options(path, learned: np.ndarray) -> LearningOptions:
         raise InputError(f"{path}: {error}") from None
 
 
-def _check_shapes(path, numbers: dict[str, np.ndarray]) -> None:
+def _check_shapes(path: Path, numbers: dict[str, np.ndarray]) -> None:
     sizes = {"N": numbers["directrix"].shape[:1], "n": numbers["demonstrations"].shape[:1]}
     sizes["k"] = numbers.get("support_planes", np.empty((0, 4))).shape[:1]
     if sizes["N"] and (sizes["N"][0] < 3 or sizes["N"][0] % 2 == 0):
@@ -114,7 +124,7 @@ def _check_shapes(path, numbers: dict[str, np.ndarray]) -> None:
             raise InputError(f"{path}: {key} is not finite; {_AGAIN}")
 
 
-def _check_geometry(path, numbers: dict[str, np.ndarray]) -> None:
+def _check_geometry(path: Path, numbers: dict[str, np.ndarray]) -> None:
     """Unit vectors unit, frames orthogonal, lengths, spreads and weights no less than 0, all within a room."""
     for key in _UNIT:
         off = np.abs(np.linalg.norm(numbers[key], axis=-1) - 1.0)

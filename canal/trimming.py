@@ -152,4 +152,4 @@ def _smooth(values: np.ndarray, sigma: float) -> np.ndarray:
     if sigma < 0.1 or pad < 1:
         return values
     padded = np.concatenate([2 * values[0] - values[pad:0:-1], values, 2 * values[-1] - values[-2 : -pad - 2 : -1]])
-    return gaussian_filter1d(padded, sigma, axis=0, mode="nearest")[pad : pad + n]
+    return np.asarray(gaussian_filter1d(padded, sigma, axis=0, mode="nearest")[pad : pad + n])

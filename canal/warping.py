@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from functools import cache
+from typing import Any
 
 import numpy as np
 from scipy.spatial.distance import cdist
@@ -13,7 +15,7 @@ _QUANTUM = 2.0**-36
 
 
 @cache
-def _tslearn_path():
+def _tslearn_path() -> Callable[..., Any]:
     """tslearn's `dtw_path_from_metric`, its just-in-time compilation off.
 
     On a few hundred points compiling costs 5 s and running 30 ms; the result is bitwise the same.
@@ -26,7 +28,8 @@ def _tslearn_path():
         from tslearn.metrics import dtw_path_from_metric
     finally:
         setattr(config, "DISABLE_JIT", before)  # noqa: B010
-    return dtw_path_from_metric
+    found: Callable[..., Any] = dtw_path_from_metric
+    return found
 
 
 def warping_path(a: np.ndarray, b: np.ndarray, band: float) -> np.ndarray:

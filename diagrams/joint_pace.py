@@ -28,7 +28,7 @@ _WIDE = 1.0  # [s], a tick that bounds nothing but a jump to another branch
 def unhurried(canal: CanalSurface) -> CanalSurface:
     """The canal, travelled at no more than 0.1 m/s: what the arm reaches of it is no question of speed."""
     slow = canal.length / UNHURRIED
-    return canal if canal.moving_time_s >= slow else canal.with_(moving_time_s=slow)
+    return canal if canal.moving_time_s >= slow else replace(canal, moving_time_s=slow)
 
 
 def at_joint_pace(

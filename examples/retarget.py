@@ -10,7 +10,7 @@ from scipy.spatial.transform import Rotation
 
 from canal.demonstration import load_demonstration
 from canal.learning import learn_canal
-from canal.retargeting import shape_cost
+from canal.retargeting import retarget, shape_cost
 from geosacs_drake.plotting import plot_canal
 from models import MODELS
 
@@ -21,7 +21,8 @@ canal = learn_canal(demonstrations)
 turn = Rotation.from_rotvec([0.0, 0.0, np.radians(20.0)])
 place = canal.directrix[-1] + [-0.2, 0.15, 0.0]
 orientation = turn * Rotation.from_quat(canal.orientations[-1], scalar_first=True)
-bent = canal.retarget(
+bent = retarget(
+    canal,
     pick=canal.directrix[0] + [0.0, 0.0, -0.1],  # a position alone keeps the orientation
     place=(place, orientation.as_quat(scalar_first=True)),
 )

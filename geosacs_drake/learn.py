@@ -16,6 +16,7 @@ from canal.errors import InputError
 from canal.learning import learn_canal
 from canal.quality import CanalQuality, canal_quality
 from canal.surface import CanalSurface
+from canal.surface_file import save_canal
 from geosacs_drake.command_line import ExitStatus, end
 from geosacs_drake.interrupts import Interrupts
 from geosacs_drake.learn_options import PROG, LearnOptions, parse
@@ -140,7 +141,7 @@ def _writers(
 
     def save() -> None:
         assert options.output is not None
-        canal.save(options.output)
+        save_canal(options.output, canal)
         said.append(f"canal written to {options.output}")
 
     def reach() -> None:

@@ -15,6 +15,7 @@ from canal.learning import learn_canal
 from canal.refinement import SupportPlane
 from canal.retargeting import retarget
 from canal.surface import CanalSurface
+from canal.surface_file import load_canal
 from diagrams.clear_arm import make_lio_solver
 from diagrams.fitted_scene import fit_scene
 from diagrams.leads_to import check_leads_to_things
@@ -82,7 +83,7 @@ def _load_or_learn(scenario: Scenario, options: RunOptions, planes: tuple[Suppor
     # Where the task has moved, the planes are where it is now; the canal is learned where it was shown.
     planes = planes if scenario.retarget == Retarget() else ()
     if path is not None:
-        return with_support_planes(CanalSurface.load(path), planes)
+        return with_support_planes(load_canal(path), planes)
     demonstrations: list[Path] = list(options.demos) or [
         scenario.resolve(name, MODELS / "demonstrations") for name in scenario.demonstrations
     ]

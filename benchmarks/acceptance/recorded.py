@@ -11,7 +11,7 @@ from benchmarks.acceptance.check import Check, Count, Figures, Job, Worst, at_mo
 from benchmarks.acceptance.commands import command, empty_folder, log_of, summary_of
 from benchmarks.canal_quality import HAND_GUIDED, RECORDED, hard_demonstrations
 from canal.demonstration import save_demonstration
-from canal.surface import CanalSurface
+from canal.surface_file import load_canal
 
 MINUTES = 0.3
 HELD_BACK = range(7100, 7120)
@@ -44,7 +44,7 @@ def _carried(demos: Sequence[Path], seed: int) -> Figures:
     """A relocation on the canal of some demonstrations, with nothing else said."""
     with empty_folder() as folder:
         command("learn", *demos, "-o", "canal.npz", folder=folder)
-        canal = CanalSurface.load(folder / "canal.npz")
+        canal = load_canal(folder / "canal.npz")
         files = ("--summary", "s.json", "--log", "l.npz")
         ended = command("run_relocation", "--headless", "--demos", *demos, "--seed", seed, *files, folder=folder)
         if not (folder / "s.json").exists():

@@ -2,19 +2,21 @@
 
 import dataclasses
 import json
+from dataclasses import replace
 
 import numpy as np
 import pytest
 from hard_demonstrations import hard_demonstrations
 
-from canal.editing import own_options
+from canal.editing import add_demonstration, cut, join, own_options, reverse
 from canal.errors import InputError
 from canal.learning import learn_canal
 from canal.learning_options import MEASURED, PAPER, LearningOptions, from_json, to_json
 from canal.options import read_options
 from canal.quality import canal_quality
 from canal.refinement import SupportPlane
-from canal.surface import CanalSurface
+from canal.retargeting import retarget
+from canal.surface_file import load_canal, save_canal
 
 PLANE = SupportPlane((0.0, 0.0, 1.0), -0.5)
 UNUSUAL = LearningOptions(
@@ -51,29 +53,29 @@ def test_the_constants_of_the_papers_table():
 def test_options_come_back_from_a_file(tmp_path, options):
     assert from_json(to_json(options)) == options
     canal = learn_canal(hard_demonstrations(2), options)
-    canal.save(tmp_path / "c.npz")
-    assert CanalSurface.load(tmp_path / "c.npz").options == options
+    save_canal(tmp_path / "c.npz", canal)
+    assert load_canal(tmp_path / "c.npz").options == options
 
 
 @pytest.mark.parametrize("text", ["", "[" * 100_000, "[]", '{"alpha": "much"}', '{"colour": 1}', '{"preset": "best"}'])
 def test_options_that_are_none_give_one_line(tmp_path, text):
     canal = learn_canal(hard_demonstrations(2))
-    canal.save(tmp_path / "c.npz")
+    save_canal(tmp_path / "c.npz", canal)
     with np.load(tmp_path / "c.npz") as file:
         arrays = dict(file)
     np.savez(tmp_path / "c.npz", **arrays | {"options": np.array(text)})
     with pytest.raises(InputError, match=r"c\.npz") as caught:
-        CanalSurface.load(tmp_path / "c.npz")
+        load_canal(tmp_path / "c.npz")
     assert "\n" not in str(caught.value)
 
 
 def test_a_file_without_options_has_the_defaults(tmp_path):
     canal = learn_canal(hard_demonstrations(2), UNUSUAL)
-    canal.save(tmp_path / "c.npz")
+    save_canal(tmp_path / "c.npz", canal)
     with np.load(tmp_path / "c.npz") as file:
         arrays = {key: array for key, array in file.items() if key != "options"}
     np.savez(tmp_path / "c.npz", **arrays)
-    old = CanalSurface.load(tmp_path / "c.npz")
+    old = load_canal(tmp_path / "c.npz")
     assert old.options == MEASURED
     assert own_options(old).support_planes == (PLANE,)
     assert np.allclose(own_options(old).x_global, (0, 1, 0))
@@ -82,12 +84,12 @@ def test_a_file_without_options_has_the_defaults(tmp_path):
 def _edited(canal):
     extra = hard_demonstrations(5, 3)[2]
     end = canal.n_disks - 1
-    first = canal.cut(0, 0.6 * end)
-    yield "reverse", canal.reverse()
-    yield "add", canal.add_demonstration(extra)
-    yield "retarget", canal.retarget(place=canal.directrix[-1] + [0.02, 0.01, 0.0])
+    first = cut(canal, 0, 0.6 * end)
+    yield "reverse", reverse(canal)
+    yield "add", add_demonstration(canal, extra)
+    yield "retarget", retarget(canal, place=canal.directrix[-1] + [0.02, 0.01, 0.0])
     yield "cut", first
-    yield "join", first.join(canal.cut(0.6 * end, end))
+    yield "join", join(first, cut(canal, 0.6 * end, end))
 
 
 def test_whatever_edits_a_canal_uses_its_options():
@@ -107,16 +109,16 @@ def test_whatever_edits_a_canal_uses_its_options():
 
 def test_a_margin_is_counted_once():
     canal = learn_canal(hard_demonstrations(5), LearningOptions(margin=0.02))
-    again = canal.retarget().retarget()
+    again = retarget(retarget(canal))
     ball = np.linalg.norm(again.demonstrations - again.directrix, axis=2).max(axis=0)
     assert np.allclose(again.radii - ball, 0.02, atol=1e-3)
 
 
 def test_joining_what_was_learned_differently_says_so():
     first = learn_canal(hard_demonstrations(5), LearningOptions(alpha=5.0, margin=0.02))
-    second = first.with_(options=dataclasses.replace(first.options, alpha=9.0, margin=0.01))
+    second = replace(first, options=dataclasses.replace(first.options, alpha=9.0, margin=0.01))
     end = first.n_disks - 1
-    joined = first.cut(0, 0.5 * end).join(second.cut(0.5 * end, end))
+    joined = join(cut(first, 0, 0.5 * end), cut(second, 0.5 * end, end))
     assert any("alpha 9.0 instead of 5.0" in line for line in joined.warnings)
     assert joined.options.alpha == 5.0
     assert joined.options.margin == 0.01

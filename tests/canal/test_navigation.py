@@ -274,7 +274,7 @@ def test_close_to_home_nothing_jumps(half_width, before_home, options):
 @pytest.mark.parametrize("speed_scale", [1e2, 1e6, 1e12])
 def test_a_step_does_bounded_work_at_any_speed(canal, started, speed_scale):
     options = NavigationOptions(wait_at_ends=False)
-    fast = canal.with_(moving_time_s=canal.moving_time_s / speed_scale)
+    fast = replace(canal, moving_time_s=canal.moving_time_s / speed_scale)
     state = step(fast, started, REST, 0.1, options=options)
     assert 0 <= state.disk <= canal.n_disks - 1
     assert 0 <= state.eta <= 1

@@ -1,5 +1,7 @@
 """Triangles of the canal's pictures: closed where they should be, and where the canal is."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from canal_examples import quarter_turn
@@ -32,7 +34,7 @@ def volume(mesh):
 def test_closed_bodies_look_outwards():
     # Meshcat draws only the outer side of closed bodies.
     canal = quarter_turn()
-    mirrored = canal.with_(y_axes=-canal.y_axes)
+    mirrored = replace(canal, y_axes=-canal.y_axes)
     line = np.stack([np.linspace(0, 1, 20)] * 3, axis=1)
     assert volume(tube(line, 0.1, 64)) == pytest.approx(np.pi * 0.01 * np.sqrt(3), rel=0.02)
     assert volume(ring(0.1)) == pytest.approx(2 * np.pi * np.pi * 0.01, rel=0.15)
@@ -89,12 +91,12 @@ def test_the_skin_lies_on_the_rims():
 
 
 def test_rings_of_a_canal_without_extent_are_finite():
-    canal = quarter_turn().with_(radii=np.zeros(101))
+    canal = replace(quarter_turn(), radii=np.zeros(101))
     assert np.isfinite(canal_rings(canal, np.array([0, 40]), 0.001).vertices).all()
     assert np.isfinite(canal_skin(canal, np.array([0, 40])).vertices).all()
 
 
 def test_rims_end_where_an_ellipse_ends():
-    canal = quarter_turn().with_(ellipses=np.tile([0.05, 0.02, 0.3], (101, 1)))
+    canal = replace(quarter_turn(), ellipses=np.tile([0.05, 0.02, 0.3], (101, 1)))
     offset = np.linalg.norm(disk_rims(canal, np.array([10]), 256)[0] - canal.directrix[10], axis=1)
     np.testing.assert_allclose([offset.max(), offset.min()], [0.05, 0.02], rtol=1e-3)

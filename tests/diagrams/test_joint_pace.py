@@ -1,5 +1,7 @@
 """A canal that was shown faster than the joints turn is travelled at what they allow."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -30,7 +32,7 @@ def test_the_shipped_pace_is_kept(run):
 @pytest.mark.parametrize(("shown_in", "scale"), [(0.5, 1.0), (None, 4.0), (0.5, 4.0)])
 def test_a_pace_beyond_the_joints_is_lowered_to_what_they_allow(run, shown_in, scale):
     solver, canal, start = run
-    fast = canal.with_(moving_time_s=shown_in) if shown_in else canal
+    fast = replace(canal, moving_time_s=shown_in) if shown_in else canal
     options, line = at_joint_pace(solver, fast, start, NavigationOptions(speed_scale=scale))
     assert line is not None
     assert "lio_joint" in line
@@ -44,7 +46,7 @@ def test_a_pace_beyond_the_joints_is_lowered_to_what_they_allow(run, shown_in, s
 
 def test_the_branch_does_not_depend_on_how_fast_it_was_shown(run):
     solver, canal, start = run
-    fast = unhurried(canal.with_(moving_time_s=0.5))
+    fast = unhurried(replace(canal, moving_time_s=0.5))
     again = find_start_posture(solver, fast, preferred=START_POSTURE)
     assert again.q == pytest.approx(start.q, abs=0.02)
     assert again.followed.mean() > 0.99

@@ -1,8 +1,11 @@
 """A canal that does not lead to a scenario's things is refused, one that does is not."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
+from canal.editing import cut
 from canal.errors import InputError
 from diagrams.leads_to import check_leads_to_things
 from diagrams.scenario import load_scenario, shipped_scenarios, with_items
@@ -32,7 +35,7 @@ def test_shipped_canals_lead_to_the_things(name):
 def test_a_canal_elsewhere_is_refused_with_distance_and_remedy(name, by, says):
     scenario = load_scenario(name)
     canal = prepare_canal(scenario, RunOptions())
-    there = canal.with_(directrix=canal.directrix + np.array(by), support_planes=())
+    there = replace(canal, directrix=canal.directrix + np.array(by), support_planes=())
     if says is None:
         check_leads_to_things(scenario, there, 0)
         return
@@ -45,6 +48,6 @@ def test_a_canal_elsewhere_is_refused_with_distance_and_remedy(name, by, says):
 def test_a_canal_that_ends_before_the_drum_is_refused():
     scenario = load_scenario("laundry")
     canal = prepare_canal(scenario, RunOptions())
-    short = canal.cut(0.0, 0.6 * (canal.n_disks - 1))
+    short = cut(canal, 0.0, 0.6 * (canal.n_disks - 1))
     with pytest.raises(InputError, match=r"the drum is 0\.\d\d m .* its place disk"):
         check_leads_to_things(scenario, short, 0)

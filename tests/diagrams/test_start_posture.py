@@ -1,5 +1,7 @@
 """The start posture: the branch that follows the whole canal is found, whatever the others look like."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from ik_arm import TCP, lio_plant, pose_of
@@ -71,4 +73,4 @@ def test_the_choice_is_reported_in_one_line(start: StartPosture) -> None:
 
 def test_a_home_out_of_reach_is_refused(solver: IkSolver, canal: CanalSurface) -> None:
     with pytest.raises(InputError, match="out of the arm's reach"):
-        find_start_posture(solver, canal.with_(directrix=canal.directrix + [2.0, 0.0, 0.0]))
+        find_start_posture(solver, replace(canal, directrix=canal.directrix + [2.0, 0.0, 0.0]))

@@ -15,7 +15,7 @@ from canal.demonstration import load_demonstration
 from canal.learning import learn_canal
 from canal.learning_options import LearningOptions
 from canal.refinement import SupportPlane
-from canal.surface import CanalSurface
+from canal.surface_file import load_canal
 from geosacs_drake.canal_html import serve
 from geosacs_drake.learn import main
 from geosacs_drake.learn_options import LearnOptions, parse
@@ -31,7 +31,7 @@ def learn(*arguments, cwd=None):
 def test_learn_writes_a_canal_two_pictures_and_a_page(tmp_path):
     done = learn(*DEMONSTRATIONS, "-o", "c.npz", "--plot", "c.png", "--html", "c.html", "--margin", 0.005, cwd=tmp_path)
     assert done.returncode == 0, done.stderr
-    canal = CanalSurface.load(tmp_path / "c.npz")
+    canal = load_canal(tmp_path / "c.npz")
     assert canal.n_disks >= 201
     for word in ("length", "radius", "home", "orientation", "tilt"):
         assert word in done.stdout
@@ -105,7 +105,7 @@ def test_planes_and_ellipses_are_options(tmp_path, capsys):
     )
     assert main(options) == 0
     assert "warning: 2 demonstrations say nothing about ellipses" in capsys.readouterr().out
-    canal = CanalSurface.load(output)
+    canal = load_canal(output)
     assert canal.support_planes[0].offset == low
     assert min(canal.point(s, 1.0, phi)[2] for s in (0, canal.n_disks - 1) for phi in range(7)) >= low - 1e-9
 
@@ -170,7 +170,7 @@ def test_units_order_and_bad_samples_of_a_recording(tmp_path):
     assert "--quaternion-order" not in done.stdout
     assert "0.npz: 1 of" in done.stdout
     plain = learn_canal([load_demonstration(path) for path in DEMONSTRATIONS])
-    canal = CanalSurface.load(tmp_path / "c.npz")
+    canal = load_canal(tmp_path / "c.npz")
     assert canal.n_disks == plain.n_disks
     assert np.abs(canal.directrix - plain.directrix).max() < 1e-3
     assert np.abs(np.sum(canal.orientations * plain.orientations, axis=1)).min() > 0.9999

@@ -1,6 +1,7 @@
 """One's own recordings do the task: a scene is fitted to them, or a line says why the given one does not fit."""
 
 import json
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -8,6 +9,7 @@ import pytest
 from canal.demonstration import load_demonstration
 from canal.learning import learn_canal
 from canal.refinement import dips
+from canal.surface_file import save_canal
 from diagrams.scenario import load_scenario, shipped_scenarios
 from geosacs_drake.options import RunOptions
 from geosacs_drake.prepare_canal import prepare_canal, prepare_task
@@ -48,8 +50,8 @@ def test_a_scenario_that_the_canal_does_not_lead_to_is_one_line_and_status_2(tas
 
 
 def test_a_canal_shown_too_fast_is_travelled_more_slowly_with_a_word_before_the_start(tmp_path, capfd):
-    canal = prepare_canal(load_scenario("relocation"), RunOptions()).with_(moving_time_s=0.5, support_planes=())
-    canal.save(tmp_path / "fast.npz")
+    canal = replace(prepare_canal(load_scenario("relocation"), RunOptions()), moving_time_s=0.5, support_planes=())
+    save_canal(tmp_path / "fast.npz", canal)
     log = tmp_path / "l.npz"
     code, _, err = run(capfd, "--headless", "--canal", tmp_path / "fast.npz", "--duration", 8, "--log", log)
     assert code == 1
@@ -67,7 +69,7 @@ def test_a_canal_from_a_file_keeps_the_scenarios_planes(name, tmp_path):
     learned = prepare_canal(scenario, RunOptions())
     bare = load_scenario(name)
     bare.support_planes = []
-    prepare_canal(bare, RunOptions()).save(tmp_path / "bare.npz")
+    save_canal(tmp_path / "bare.npz", prepare_canal(bare, RunOptions()))
     loaded = prepare_canal(scenario, RunOptions(canal=tmp_path / "bare.npz"))
     assert loaded.support_planes == learned.support_planes != ()
     np.testing.assert_array_equal(loaded.normals, learned.normals)
@@ -89,14 +91,14 @@ def test_every_shipped_scenario_refines_its_canal_at_a_surface(name):
 
 
 def test_a_canal_that_passes_below_the_scenarios_plane_is_refused(tmp_path, capfd):
-    prepare_canal(load_scenario("laundry"), RunOptions()).save(tmp_path / "low.npz")
+    save_canal(tmp_path / "low.npz", prepare_canal(load_scenario("laundry"), RunOptions()))
     code, _, err = run(capfd, "--headless", "--canal", tmp_path / "low.npz", "--scenario", "relocation")
     assert code == 2
     assert "beyond the support plane" in err.splitlines()[-1]
 
 
 def test_demonstrations_and_the_canal_learned_from_them_get_the_same_scene(tmp_path):
-    learn_canal([load_demonstration(path) for path in TABLES]).save(tmp_path / "c.npz")
+    save_canal(tmp_path / "c.npz", learn_canal([load_demonstration(path) for path in TABLES]))
     one, canal = prepare_task(load_scenario("relocation"), RunOptions(demos=tuple(TABLES)))
     other, loaded = prepare_task(load_scenario("relocation"), RunOptions(canal=tmp_path / "c.npz"))
     assert one == other

@@ -8,6 +8,7 @@ import pytest
 
 from canal.demonstration import Demonstration, save_demonstration
 from canal.learning import learn_canal
+from canal.surface_file import save_canal
 from diagrams.scenario import load_scenario
 from geosacs_drake.options import RunOptions
 from geosacs_drake.prepare_canal import prepare_canal
@@ -114,7 +115,7 @@ def files(tmp_path):
     np.savez(tmp_path / "pickled.npz", position=np.array([{}], dtype=object), orientation=q)
     save_demonstration(tmp_path / "backwards.npz", Demonstration(p[::-1], q, None, "backwards"))
     far = Demonstration(p + [5.0, 0, 0], q, None, "far")
-    learn_canal([far, far]).save(tmp_path / "far.npz")
+    save_canal(tmp_path / "far.npz", learn_canal([far, far]))
     return tmp_path
 
 
@@ -175,7 +176,7 @@ def test_a_canal_and_its_demonstrations_run_alike(tmp_path, monkeypatch, capfd):
     monkeypatch.chdir(tmp_path)
     demos = [MODELS / "demonstrations" / f"relocation_{i}.npz" for i in (1, 2)]
     scenario = load_scenario("relocation")
-    prepare_canal(scenario, RunOptions(demos=tuple(demos))).save("c.npz")
+    save_canal("c.npz", prepare_canal(scenario, RunOptions(demos=tuple(demos))))
     common = ("--headless", "--duration", 2)
     run(capfd, *common, "--canal", "c.npz", "--log", "a.npz", task="relocation")
     run(capfd, *common, "--demos", *demos, "--log", "b.npz", task="relocation")
