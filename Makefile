@@ -30,6 +30,7 @@ lint: setup
 	$(PY) -m ruff check .
 	$(PY) -m ruff format --check .
 	$(PY) -m mypy
+	$(PY) -m mypy --strict canal
 
 # What the tests are too short for, in under half an hour on two cores; `make acceptance ARGS="--list"`.
 acceptance: setup
