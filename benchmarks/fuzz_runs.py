@@ -14,8 +14,9 @@ from canal.joystick import GRIPPER, JOYSTICK_PERIOD, JOYSTICK_SIZE, REVERSE, STA
 from canal.navigation import FIELD_NAMES
 from canal.surface import CanalSurface
 from diagrams.joystick_recording import JoystickRecording
-from diagrams.scenario import Item, Retarget, Scenario, load_scenario, with_items
+from diagrams.scenario import Retarget, Scenario, load_scenario, with_items
 from diagrams.shared_autonomy import SharedAutonomy, build_shared_autonomy
+from diagrams.world import Item
 from geosacs_drake.options import RunOptions
 from geosacs_drake.prepare_canal import prepare_canal
 from geosacs_drake.simulate import simulate

@@ -15,10 +15,10 @@ from pydrake.systems.analysis import Simulator
 from pydrake.systems.framework import DiagramBuilder
 
 from diagrams.lio_station import plant_config
-from diagrams.scenario import Contact
 from diagrams.soft_contact import prepare_for_cloth
 from diagrams.soft_items import add_soft_item, soft_positions
 from diagrams.soft_shapes import make_shape
+from diagrams.world import Contact
 from models import MODELS
 
 FALLS = 3.0

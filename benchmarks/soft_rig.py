@@ -22,11 +22,11 @@ from pydrake.systems.analysis import Simulator
 from pydrake.systems.framework import DiagramBuilder
 
 from diagrams.lio_station import plant_config
-from diagrams.scenario import Contact
 from diagrams.soft_contact import MARGIN, prepare_for_cloth
 from diagrams.soft_depth import FixedBoxes
 from diagrams.soft_items import SoftMaterial, add_soft_item, node_masses, soft_positions, soft_velocities
 from diagrams.soft_shapes import SoftShape
+from diagrams.world import Contact
 
 OPEN, CLOSED = 0.5236, -0.1  # [rad], as diagrams.lio_drive commands them
 TICK = 0.01  # [s]

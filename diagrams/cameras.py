@@ -185,9 +185,12 @@ class VideoRecorder(LeafSystem):
         first.save(stream, form, save_all=True, append_images=rest, duration=round(1000 / FRAME_RATE), loop=0)
 
     @staticmethod
-    def AddToBuilder(*, builder: DiagramBuilder, station: LioStation, path: Path) -> VideoRecorder:
-        """Add the room's camera, the gripper's, and the recorder; call `save` after the run."""
-        view = VIEWS[station.scene.scenario.task]
+    def AddToBuilder(*, builder: DiagramBuilder, station: LioStation, task: str, path: Path) -> VideoRecorder:
+        """Add the room's camera, where it sees the `task` (a key of `VIEWS`), the gripper's, and the recorder.
+
+        Call `save` after the run.
+        """
+        view = VIEWS[task]
         recorder = builder.AddNamedSystem("video_recorder", VideoRecorder(path))
         X = station.X_WB.multiply(look_at(view.eye, view.target))
         room = add_camera(builder=builder, station=station, X=X, size=SIZE, fov_deg=view.fov_deg)

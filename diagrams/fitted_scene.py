@@ -23,8 +23,9 @@ from diagrams.layout import draw_layout
 from diagrams.lio_station import START_POSTURE
 from diagrams.open_gripper import gripper_depth, lean, opens_towards, tool_axes
 from diagrams.reach import ReachReport, reach_report
-from diagrams.scenario import Item, Region, Robot, Room, Scenario, Thing
+from diagrams.scenario import Scenario
 from diagrams.start_posture import find_start_posture
+from diagrams.world import Item, Region, Robot, Room, Thing
 
 GRIP_HEIGHT = 0.040
 """Of the TCP above the table when the gripper closes [m], as in the shipped relocation: the pads hold the middle of

@@ -10,7 +10,7 @@ from pydrake.math import RigidTransform, RollPitchYaw
 
 from canal.errors import InputError
 from diagrams.goals import DrumGoal, Goal, MarkGoal
-from diagrams.scenario import Region, Robot, Room, Scenario, Thing
+from diagrams.world import Region, Robot, Room, Thing, World
 
 TRIES, ROUNDS = 200, 100
 LAYOUT_STREAM = 5
@@ -35,7 +35,7 @@ def base_pose(robot: Robot) -> RigidTransform:
     return yaw_pose(robot.position, np.deg2rad(robot.yaw_deg))
 
 
-def draw_layout(scenario: Scenario, seed: int) -> tuple[list[Spot], list[Spot | None]]:
+def draw_layout(world: World, seed: int) -> tuple[list[Spot], list[Spot | None]]:
     """Draw a start for each item, and a mark for each that has a goal; no two nearer than the scenario's spacing.
 
     Args:
@@ -51,28 +51,28 @@ def draw_layout(scenario: Scenario, seed: int) -> tuple[list[Spot], list[Spot | 
     rng = np.random.default_rng((seed, LAYOUT_STREAM))
     starts = _draw_all(
         rng,
-        scenario,
+        world,
         [
             (item.name, "soft_start", item.soft_start)
             if item.kind == "soft" and item.soft_start is not None
             else (item.name, "start", item.start)
-            for item in scenario.items
+            for item in world.items
         ],
     )
-    goals = {i: item.goal for i, item in enumerate(scenario.items) if item.goal is not None}
-    drawn = _draw_all(rng, scenario, [(scenario.items[i].name, "goal", region) for i, region in goals.items()])
+    goals = {i: item.goal for i, item in enumerate(world.items) if item.goal is not None}
+    drawn = _draw_all(rng, world, [(world.items[i].name, "goal", region) for i, region in goals.items()])
     marks = dict(zip(goals, drawn, strict=True))
-    return starts, [marks.get(i) for i in range(len(scenario.items))]
+    return starts, [marks.get(i) for i in range(len(world.items))]
 
 
-def _draw_all(rng: np.random.Generator, scenario: Scenario, regions: list[tuple[str, str, Region]]) -> list[Spot]:
+def _draw_all(rng: np.random.Generator, world: World, regions: list[tuple[str, str, Region]]) -> list[Spot]:
     """A spot in each region (item, key, region), all apart; anew where the first leave no place for the last."""
     crowded = ""
     for _ in range(ROUNDS):
         spots: list[Spot] = []
         for item, key, region in regions:
             others = list(zip(spots, (r for _, _, r in regions), strict=False))
-            spot = _draw(rng, scenario, region, others)
+            spot = _draw(rng, world, region, others)
             if spot is None:
                 crowded = crowded or f"items.{item}.{key}"
                 break
@@ -80,22 +80,20 @@ def _draw_all(rng: np.random.Generator, scenario: Scenario, regions: list[tuple[
         else:
             return spots
     raise InputError(
-        f"{crowded} leaves no place that is {scenario.item_spacing:g} m from the others and clear of the fingers; "
+        f"{crowded} leaves no place that is {world.item_spacing:g} m from the others and clear of the fingers; "
         "widen its region, move its center, or lower item_spacing"
     )
 
 
-def _draw(
-    rng: np.random.Generator, scenario: Scenario, region: Region, others: list[tuple[Spot, Region]]
-) -> Spot | None:
-    on = next((thing for thing in scenario.things if thing.name == region.frame), Thing())
+def _draw(rng: np.random.Generator, world: World, region: Region, others: list[tuple[Spot, Region]]) -> Spot | None:
+    on = next((thing for thing in world.things if thing.name == region.frame), Thing())
     X_WT = yaw_pose(on.position, np.deg2rad(on.yaw_deg))
     for _ in range(TRIES):
         shift = _shift(rng, region)
         yaw = np.deg2rad(on.yaw_deg + rng.uniform(region.yaw_deg[0], region.yaw_deg[1]))
         position = X_WT.multiply(np.asarray(region.center, dtype=float) + [*shift, 0.0])
         if all(
-            np.linalg.norm(position - other.position) >= scenario.item_spacing
+            np.linalg.norm(position - other.position) >= world.item_spacing
             and _clear(position - other.position, region.room)
             and _clear(position - other.position, theirs.room)
             for other, theirs in others
@@ -127,7 +125,7 @@ def _clear(apart: np.ndarray, room: Room | None) -> bool:
     return bool(abs(c * apart[0] + s * apart[1]) >= room.along or abs(c * apart[1] - s * apart[0]) >= room.across)
 
 
-def make_goals(scenario: Scenario, marks: list[Spot | None], rest_heights: list[float]) -> list[Goal]:
+def make_goals(world: World, marks: list[Spot | None], rest_heights: list[float]) -> list[Goal]:
     """What "placed" means for each item.
 
     Args:
@@ -136,11 +134,11 @@ def make_goals(scenario: Scenario, marks: list[Spot | None], rest_heights: list[
         rest_heights: of each item's origin above the surface that it stands on [m].
     """
     goals: list[Goal] = []
-    for item, mark, height in zip(scenario.items, marks, rest_heights, strict=True):
+    for item, mark, height in zip(world.items, marks, rest_heights, strict=True):
         if mark is not None:
             goals.append(MarkGoal(position=mark.position + [0, 0, height], upright=item.upright))
             continue
-        drum = scenario.drum
+        drum = world.drum
         if drum is None:
             raise InputError(f"items.{item.name} has no goal, and there is no drum; give one of them")
         inward = np.asarray(drum.inward, dtype=float)

@@ -10,7 +10,7 @@ from pydrake.math import RigidTransform
 from canal.errors import InputError
 from canal.surface import CanalSurface
 from diagrams.layout import base_pose, draw_layout
-from diagrams.scenario import Drum, Scenario
+from diagrams.world import Drum, World
 
 GRIPPED_AT = 0.04
 """[m] Height of the TCP above a surface at which it closes on what lies there (`fitted_scene.GRIP_HEIGHT`)."""
@@ -20,7 +20,7 @@ BESIDE = 0.10
 """[m] Further than this beside the disk the open fingers, 0.055 to each side of the TCP, close on nothing."""
 
 
-def check_leads_to_things(scenario: Scenario, canal: CanalSurface, seed: int) -> None:
+def check_leads_to_things(world: World, canal: CanalSurface, seed: int) -> None:
     """Refuse a canal whose pick disk is not where the things lie, or whose place disk is not where they belong.
 
     Args:
@@ -31,15 +31,15 @@ def check_leads_to_things(scenario: Scenario, canal: CanalSurface, seed: int) ->
     Raises:
         InputError: names the first thing that is too far off, its distance, and what can be done.
     """
-    X_BW = base_pose(scenario.robot).inverse()
-    starts, marks = draw_layout(scenario, seed)
+    X_BW = base_pose(world.robot).inverse()
+    starts, marks = draw_layout(world, seed)
     last = canal.n_disks - 1
-    for item, start, mark in zip(scenario.items, starts, marks, strict=True):
+    for item, start, mark in zip(world.items, starts, marks, strict=True):
         _check_surface(canal, 0, f"{item.name} lies", X_BW.multiply(start.position))
         if mark is not None:
             _check_surface(canal, last, f"{item.name} belongs", X_BW.multiply(mark.position))
-        elif scenario.drum is not None:
-            distance = _distance_to_drum(X_BW, scenario.drum, canal.center(last))
+        elif world.drum is not None:
+            distance = _distance_to_drum(X_BW, world.drum, canal.center(last))
             if distance > BESIDE:
                 _refuse(canal, last, f"the drum is {distance:.2f} m (at most {BESIDE:.2f}) from the middle of")
 

@@ -20,9 +20,9 @@ from diagrams.lio_drive import ARM, DAMPING, STIFFNESS, LioDrive
 from diagrams.lio_sensors import LioSensor
 from diagrams.overlaps import check_overlaps
 from diagrams.resting_arm import Standing
-from diagrams.scenario import Contact, Scenario
 from diagrams.scene import Scene, add_scene
 from diagrams.soft_contact import prepare_for_cloth
+from diagrams.world import Contact, World
 
 START_POSTURE = np.array([-1.62113, -1.19688, 1.27447, 0.02532, 1.48154, -0.05674])
 """[rad] (SPEC section 6)."""
@@ -49,10 +49,8 @@ class LioStation(Diagram):
     the pairs. Gravity does not act on the arm's model: ideal compensation, as the real drives have it.
     """
 
-    def __init__(
-        self, scenario: Scenario, *, seed: int = 0, q0: np.ndarray = START_POSTURE, filmed: bool = False
-    ) -> None:
-        """Build the scene of a scenario, its items drawn from `seed`, the arm in posture `q0` (6,) [rad].
+    def __init__(self, world: World, *, seed: int = 0, q0: np.ndarray = START_POSTURE, filmed: bool = False) -> None:
+        """Build the scene of a world, its items drawn from `seed`, the arm in posture `q0` (6,) [rad].
 
         `filmed`: whether cameras will look at it.
 
@@ -61,12 +59,12 @@ class LioStation(Diagram):
         """
         super().__init__()
         builder = DiagramBuilder()
-        soft = any(item.kind == "soft" for item in scenario.items)
-        plant, scene_graph = AddMultibodyPlant(plant_config(scenario.contact.for_items(soft)), builder)
+        soft = any(item.kind == "soft" for item in world.items)
+        plant, scene_graph = AddMultibodyPlant(plant_config(world.contact.for_items(soft)), builder)
         self.plant: MultibodyPlant = plant
         self.scene_graph: SceneGraph = scene_graph
-        self.scene: Scene = add_scene(plant=plant, scene_graph=scene_graph, scenario=scenario, seed=seed, filmed=filmed)
-        self.goals: list[Goal] = make_goals(scenario, self.scene.marks, self.scene.rest_heights)
+        self.scene: Scene = add_scene(plant=plant, scene_graph=scene_graph, world=world, seed=seed, filmed=filmed)
+        self.goals: list[Goal] = make_goals(world, self.scene.marks, self.scene.rest_heights)
         lio = self.scene.lio
         set_drives(plant, lio)
         plant.set_gravity_enabled(lio, False)
@@ -77,7 +75,7 @@ class LioStation(Diagram):
         stops = arm_stops(plant)
         drive = LioDrive(
             checked_posture(q0, stops),
-            period=in_step(1.0 / scenario.control_rate_hz),
+            period=in_step(1.0 / world.control_rate_hz),
             time_step=plant.time_step(),
             stops=stops,
             speeds=arm_speeds(plant),
@@ -129,13 +127,13 @@ class LioStation(Diagram):
     def AddToBuilder(
         *,
         builder: DiagramBuilder,
-        scenario: Scenario,
+        world: World,
         seed: int = 0,
         q0: np.ndarray = START_POSTURE,
         filmed: bool = False,
     ) -> LioStation:
         """Build a station and add it; its inputs are left to connect."""
-        return builder.AddNamedSystem("lio_station", LioStation(scenario, seed=seed, q0=q0, filmed=filmed))
+        return builder.AddNamedSystem("lio_station", LioStation(world, seed=seed, q0=q0, filmed=filmed))
 
     def plant_context(self, context: Context) -> Context:
         """The plant's part of the context of any diagram that this station is in."""

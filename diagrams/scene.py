@@ -12,10 +12,10 @@ from pydrake.multibody.plant import MultibodyPlant
 from pydrake.multibody.tree import BodyIndex, ModelInstanceIndex, RigidBody
 
 from diagrams.layout import Spot, base_pose, draw_layout, yaw_pose
-from diagrams.scenario import Item, Robot, Scenario, Thing
 from diagrams.shape_bounds import BodyBounds, Extent, extent
 from diagrams.soft_items import SoftItem, add_soft_item
 from diagrams.soft_shapes import make_shape
+from diagrams.world import Item, Robot, Thing, World
 from models import LIO_URDF, MODELS
 
 DROP = 0.001
@@ -48,13 +48,13 @@ class RigidItem:
 class Scene:
     """Handles to what was added to the plant."""
 
-    scenario: Scenario
+    world: World
     lio: ModelInstanceIndex
     X_WB: RigidTransform
     things: dict[str, list[ModelInstanceIndex]] = field(default_factory=dict)
     """By name; things that share a name are watched as one."""
     items: list[RigidItem | SoftItem] = field(default_factory=list)
-    """In the order of the scenario."""
+    """In the order of the world."""
     marks: list[Spot | None] = field(default_factory=list)
     rest_heights: list[float] = field(default_factory=list)
     """Of each item's origin above the surface it stands on [m]."""
@@ -79,7 +79,7 @@ def add_lio(plant: MultibodyPlant, robot: Robot) -> tuple[ModelInstanceIndex, Ri
 
 
 def add_scene(
-    *, plant: MultibodyPlant, scene_graph: SceneGraph, scenario: Scenario, seed: int, filmed: bool = False
+    *, plant: MultibodyPlant, scene_graph: SceneGraph, world: World, seed: int, filmed: bool = False
 ) -> Scene:
     """Add all that a scenario names to a plant that is registered with a scene graph and not yet finalized.
 
@@ -88,16 +88,16 @@ def add_scene(
     Raises:
         InputError: a model does not exist, or the items do not fit where they may lie.
     """
-    lio, X_WB = add_lio(plant, scenario.robot)
-    scene = Scene(scenario, lio, X_WB)
-    for k, thing in enumerate(scenario.things):
-        scene.things.setdefault(thing.name, []).append(_add_thing(plant, scenario, thing, k))
-    starts, scene.marks = draw_layout(scenario, seed)
-    for item, start in zip(scenario.items, starts, strict=True):
-        height, handle = _add_item(plant, scene_graph, scenario, item, start, filmed)
+    lio, X_WB = add_lio(plant, world.robot)
+    scene = Scene(world, lio, X_WB)
+    for k, thing in enumerate(world.things):
+        scene.things.setdefault(thing.name, []).append(_add_thing(plant, world, thing, k))
+    starts, scene.marks = draw_layout(world, seed)
+    for item, start in zip(world.items, starts, strict=True):
+        height, handle = _add_item(plant, scene_graph, world, item, start, filmed)
         scene.rest_heights.append(height)
         scene.items.append(handle)
-    for item, mark in zip(scenario.items, scene.marks, strict=True):
+    for item, mark in zip(world.items, scene.marks, strict=True):
         if mark is not None:
             color = np.array([*MARK_COLORS.get(item.model, (0.3, 0.3, 0.3)), 1.0])
             for name, radius, rgba in (("edge", MARK_RADIUS, color), ("field", 0.8 * MARK_RADIUS, PAPER)):
@@ -110,8 +110,8 @@ def add_scene(
 PAPER = np.array([0.97, 0.96, 0.92, 1.0])
 
 
-def _add_thing(plant: MultibodyPlant, scenario: Scenario, thing: Thing, k: int) -> ModelInstanceIndex:
-    path = scenario.resolve(thing.model, MODELS / "world", ".sdf")
+def _add_thing(plant: MultibodyPlant, world: World, thing: Thing, k: int) -> ModelInstanceIndex:
+    path = world.resolve(thing.model, MODELS / "world", ".sdf")
     (model,) = Parser(plant, f"thing{k}").AddModels(str(path))
     (body,) = plant.GetBodyIndices(model)
     X = yaw_pose(thing.position, np.deg2rad(thing.yaw_deg))
@@ -120,7 +120,7 @@ def _add_thing(plant: MultibodyPlant, scenario: Scenario, thing: Thing, k: int) 
 
 
 def _add_item(
-    plant: MultibodyPlant, scene_graph: SceneGraph, scenario: Scenario, item: Item, start: Spot, filmed: bool
+    plant: MultibodyPlant, scene_graph: SceneGraph, world: World, item: Item, start: Spot, filmed: bool
 ) -> tuple[float, RigidItem | SoftItem]:
     """Add one item where it starts; returns also the height of its origin above what it stands on."""
     X = yaw_pose(start.position, start.yaw)
@@ -129,7 +129,7 @@ def _add_item(
         height = -float(shape.mesh.vertices[:, 2].min())
         X.set_translation(start.position + [0, 0, height + DROP])
         return height, add_soft_item(plant=plant, name=item.name, shape=shape, X_WP=X, filmed=filmed)
-    path = scenario.resolve(item.model, MODELS / "items", ".sdf")
+    path = world.resolve(item.model, MODELS / "items", ".sdf")
     (model,) = Parser(plant, f"item_{item.name}").AddModels(str(path))
     (index,) = plant.GetBodyIndices(model)
     body = plant.get_body(index)

@@ -107,12 +107,10 @@ def build_shared_autonomy(
     period = in_step(1.0 / scenario.control_rate_hz)
     builder = DiagramBuilder()
 
-    solver = make_lio_solver(scenario)
+    solver = make_lio_solver(scenario, scenario.ik)
     start = find_start_posture(solver, unhurried(canal), preferred=START_POSTURE)
     navigation, slower = at_joint_pace(solver, canal, start, scenario.navigation)
-    station = LioStation.AddToBuilder(
-        builder=builder, scenario=scenario, seed=seed, q0=start.q, filmed=video is not None
-    )
+    station = LioStation.AddToBuilder(builder=builder, world=scenario, seed=seed, q0=start.q, filmed=video is not None)
     navigator = CanalNavigator.AddToBuilder(builder=builder, canal=canal, options=navigation, period=period)
     ik = builder.AddNamedSystem("ik", OrientationWeightedIk(solver, q_start=start.q, period=period))
     monitor = Monitor.AddToBuilder(
@@ -258,7 +256,11 @@ def build_shared_autonomy(
             "in_charge_samples": selector.GetOutputPort("person_in_charge"),
         },
     )
-    recorder = None if video is None else VideoRecorder.AddToBuilder(builder=builder, station=station, path=video)
+    recorder = (
+        None
+        if video is None
+        else VideoRecorder.AddToBuilder(builder=builder, station=station, task=scenario.task, path=video)
+    )
     diagram = builder.Build()
     diagram.set_name("shared_autonomy")
     return SharedAutonomy(

@@ -38,7 +38,7 @@ def prepare_task(scenario: Scenario, options: RunOptions) -> tuple[Scenario, Can
     """
     if (options.canal or options.demos) and not options.scenario and scenario.task == "relocation":
         template = replace(scenario, support_planes=[], retarget=Retarget())
-        fitted = fit_scene(prepare_canal(template, options), template, make_lio_solver(template))
+        fitted = fit_scene(prepare_canal(template, options), template, make_lio_solver(template, template.ik))
         for line in fitted.lines:
             print(line, file=sys.stderr)
         return fitted.scenario, fitted.canal

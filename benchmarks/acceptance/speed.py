@@ -36,7 +36,7 @@ def bare_scene(scenario: Scenario, q0: np.ndarray) -> Simulator:
     builder = DiagramBuilder()
     soft = any(item.kind == "soft" for item in scenario.items)
     plant, scene_graph = AddMultibodyPlant(plant_config(scenario.contact.for_items(soft)), builder)
-    scene = add_scene(plant=plant, scene_graph=scene_graph, scenario=scenario, seed=0, filmed=False)
+    scene = add_scene(plant=plant, scene_graph=scene_graph, world=scenario, seed=0, filmed=False)
     set_drives(plant, scene.lio)
     plant.set_gravity_enabled(scene.lio, False)
     if scene.soft_items:

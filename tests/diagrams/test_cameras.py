@@ -36,9 +36,9 @@ def test_mp4_without_ffmpeg_is_refused(tmp_path, monkeypatch):
 
 def test_a_gif_of_the_room(tmp_path):
     builder = DiagramBuilder()
-    station = LioStation.AddToBuilder(builder=builder, scenario=load_scenario("relocation"))
+    station = LioStation.AddToBuilder(builder=builder, world=load_scenario("relocation"))
     path = tmp_path / "film.gif"
-    recorder = VideoRecorder.AddToBuilder(builder=builder, station=station, path=path)
+    recorder = VideoRecorder.AddToBuilder(builder=builder, station=station, task="relocation", path=path)
     diagram = builder.Build()
     simulator = Simulator(diagram)
     context = station.GetMyMutableContextFromRoot(simulator.get_mutable_context())

@@ -30,7 +30,7 @@ def canal() -> CanalSurface:
 
 @pytest.fixture(scope="module")
 def fitted(canal: CanalSurface) -> FittedScene:
-    return fit_scene(canal, TEMPLATE, make_lio_solver(TEMPLATE))
+    return fit_scene(canal, TEMPLATE, make_lio_solver(TEMPLATE, TEMPLATE.ik))
 
 
 def test_tables_stand_where_the_gripper_closes(fitted: FittedScene) -> None:
@@ -95,14 +95,14 @@ def moved(demonstration: Demonstration, by: list[float], turn: Rotation | None =
 def test_a_canal_out_of_reach_is_refused() -> None:
     far = learn_canal([moved(d, [0.2, 0.0, 0.0]) for d in TABLES])
     with pytest.raises(InputError, match=r"the arm follows \d+ % of the canal"):
-        fit_scene(far, TEMPLATE, make_lio_solver(TEMPLATE))
+        fit_scene(far, TEMPLATE, make_lio_solver(TEMPLATE, TEMPLATE.ik))
 
 
 def test_a_gripper_that_does_not_point_down_is_refused() -> None:
     level = learn_canal([moved(d, [0, 0, 0], Rotation.from_euler("y", -85, degrees=True)) for d in TABLES])
     assert np.degrees(lean(level.orientations[0])) > 50
     with pytest.raises(InputError, match=r"at pick the gripper points \d+° off straight down"):
-        fit_scene(level, TEMPLATE, make_lio_solver(TEMPLATE))
+        fit_scene(level, TEMPLATE, make_lio_solver(TEMPLATE, TEMPLATE.ik))
 
 
 def test_a_small_disk_gets_what_there_is_room_for() -> None:
@@ -116,6 +116,6 @@ def test_a_small_disk_gets_what_there_is_room_for() -> None:
 
     narrow = learn_canal([narrowed(d) for d in TABLES])
     assert narrow.radii[0] < 0.04
-    fitted = fit_scene(narrow, TEMPLATE, make_lio_solver(TEMPLATE))
+    fitted = fit_scene(narrow, TEMPLATE, make_lio_solver(TEMPLATE, TEMPLATE.ik))
     assert 0 < len(fitted.scenario.items) < 3
     assert any("of 3 things" in line for line in fitted.lines)

@@ -115,9 +115,9 @@ def test_bad_options_are_refused() -> None:
 
 def test_a_scenario_can_ask_the_arm_to_keep_clear_of_its_things() -> None:
     scenario = load_scenario("laundry")
-    assert make_lio_solver(scenario).clearance is None
+    assert make_lio_solver(scenario, scenario.ik).clearance is None
     scenario.ik.keep_clear = KeepClearOptions(margin=0.01, solid_bodies=["machine"])
-    solver = make_lio_solver(scenario)
+    solver = make_lio_solver(scenario, scenario.ik)
     assert solver.clearance is not None
     front = pose_of(solver, START_POSTURE)
     q, v = START_POSTURE, np.zeros(6)

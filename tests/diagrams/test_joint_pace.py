@@ -18,7 +18,7 @@ from geosacs_drake.prepare_canal import prepare_canal
 @pytest.fixture(scope="module")
 def run():
     scenario = load_scenario("relocation")
-    canal, solver = prepare_canal(scenario, RunOptions()), make_lio_solver(scenario)
+    canal, solver = prepare_canal(scenario, RunOptions()), make_lio_solver(scenario, scenario.ik)
     return solver, canal, find_start_posture(solver, canal, preferred=START_POSTURE)
 
 

@@ -8,7 +8,8 @@ import yaml
 
 from canal.errors import InputError
 from diagrams.layout import draw_layout, reach_at, yaw_pose
-from diagrams.scenario import Contact, Region, Room, load_scenario, shipped_scenarios, with_items
+from diagrams.scenario import load_scenario, shipped_scenarios, with_items
+from diagrams.world import Contact, Region, Room
 from models import SCENARIOS
 
 NAMED = [
@@ -121,7 +122,7 @@ def test_unknown_name_lists_those_that_ship():
 @pytest.mark.parametrize(
     ("change", "message"),
     [
-        ({"foo": 3}, "foo is not known; use task, "),
+        ({"foo": 3}, "foo is not known; use robot, "),
         ({"task": "cook"}, "task is 'cook'; give one of laundry or relocation"),
         ({"item_spacing": "abc"}, "item_spacing is 'abc'; give a number"),
         ({"drum": 7}, "drum is 7; give keys among center"),

@@ -30,7 +30,7 @@ def test_a_filmed_piece_shows_more_than_one_colour():
     for filmed in (False, True):
         builder = DiagramBuilder()
         station = LioStation.AddToBuilder(
-            builder=builder, scenario=with_items(load_scenario("laundry"), "soft"), filmed=filmed
+            builder=builder, world=with_items(load_scenario("laundry"), "soft"), filmed=filmed
         )
         x, y, z = station.X_WB.multiply([0.475, 0.15, 0.33])  # the sock
         camera = add_camera(

@@ -8,7 +8,8 @@ from diagrams.ik_solver import IkSolver
 from diagrams.lio_arm import TCP_FRAME, make_arm_plant
 from diagrams.lio_station import LioStation
 from diagrams.pose_vector import vector_to_pose
-from diagrams.scenario import Region, Robot, load_scenario
+from diagrams.scenario import load_scenario
+from diagrams.world import Region, Robot
 
 # R_BT with x_T straight down; at azimuth 0 the fingers open along y_B.
 DOWN = np.array([0.0, 0.7071067811865476, 0.0, -0.7071067811865476])

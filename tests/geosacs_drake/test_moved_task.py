@@ -41,7 +41,7 @@ def test_a_turn_alone_keeps_the_places(shown):
 def test_the_arm_follows_it(name):
     scenario = load_scenario(name)
     canal = prepare_canal(scenario, RunOptions())
-    start = find_start_posture(make_lio_solver(scenario), canal, preferred=START_POSTURE)
+    start = find_start_posture(make_lio_solver(scenario, scenario.ik), canal, preferred=START_POSTURE)
     # Where the wrist turns fast its joints' speed is the limit; 10 mm is what the operator may be off anywhere.
     assert start.followed.mean() >= 0.9, start.describe()
     assert start.position_error < 0.010, start.describe()
