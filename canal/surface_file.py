@@ -30,6 +30,9 @@ SHAPES = {  # of the arrays every file has; N disks, n demonstrations
     "demonstration_orientations": ("n", "N", 4),
 }
 OPTIONAL_SHAPES = {"ellipses": ("N", 3), "x_global": (3,), "support_planes": ("k", 4)}
+SCALARS, TEXTS = ("moving_time_s", "format_version"), ("warnings", "options")
+KEYS = (*SHAPES, *OPTIONAL_SHAPES, *SCALARS, *TEXTS)
+"""Of a canal file."""
 TOLERANCE = 1e-4  # of unit length and right angles: files of single floats have 1e-7
 FURTHEST_M = 100.0  # no arm's canal is so long, or so far from its base
 SHORTEST_M = 1e-4  # below this all disks are in one place
@@ -51,6 +54,11 @@ def save_canal(path: Path, canal: CanalSurface) -> None:
     Raises:
         InputError: the file cannot be written.
     """
+    write_npz(path, **canal_arrays(canal))
+
+
+def canal_arrays(canal: CanalSurface) -> dict[str, np.ndarray]:
+    """The arrays of a canal file, by their keys."""
     arrays = {key: getattr(canal, key) for key in SHAPES}
     arrays["moving_time_s"] = np.array(canal.moving_time_s)
     arrays["format_version"] = np.array(FORMAT_VERSION)
@@ -60,7 +68,7 @@ def save_canal(path: Path, canal: CanalSurface) -> None:
     arrays["options"] = np.array(to_json(canal.options))
     if canal.ellipses is not None:
         arrays["ellipses"] = canal.ellipses
-    write_npz(path, **arrays)
+    return arrays
 
 
 def load_canal(path: Path) -> CanalSurface:
@@ -69,14 +77,25 @@ def load_canal(path: Path) -> CanalSurface:
     Raises:
         InputError: it is not a canal file, with what is missing or wrong.
     """
-    scalars, texts = ("moving_time_s", "format_version"), ("warnings", "options")
-    arrays = read_npz(path, "a canal (.npz)", (*SHAPES, *OPTIONAL_SHAPES, *scalars, *texts))
+    return canal_of(path, read_npz(path, "a canal (.npz)", KEYS))
+
+
+def canal_of(path: Path, arrays: dict[str, np.ndarray]) -> CanalSurface:
+    """The canal in the arrays of a file.
+
+    Args:
+        path: the file, for messages.
+        arrays: those among `KEYS` that it has.
+
+    Raises:
+        InputError: they are none of a canal, with what is missing or wrong.
+    """
     missing = [key for key in (*SHAPES, "moving_time_s") if key not in arrays]
     if missing:
         raise InputError(f"{path}: is no canal file, it lacks {', '.join(missing)}; make one with learn -o")
-    warnings, learned = (arrays.pop(key, np.empty(0, dtype=np.str_)) for key in texts)
-    numbers = {key: as_numbers(array, f"{path}: {key}") for key, array in arrays.items()}
-    for key in scalars:
+    warnings, learned = (arrays.get(key, np.empty(0, dtype=np.str_)) for key in TEXTS)
+    numbers = {key: as_numbers(array, f"{path}: {key}") for key, array in arrays.items() if key not in TEXTS}
+    for key in SCALARS:
         if key in numbers and (numbers[key].shape != () or not numbers[key] > 0 or np.isinf(numbers[key])):
             raise InputError(f"{path}: {key} must be one positive number; {_AGAIN}")
     version = float(numbers.pop("format_version", np.array(FORMAT_VERSION)))

@@ -41,8 +41,9 @@ class LioStation(Diagram):
     ```
      desired_state (12: q, v) → ┌────────────┐ → q (6), v (6), gripper_state (2: angle, rate), X_BT (7)
                                 │            │ → item_poses (7 n), item_bounds (6 n), item_speeds (n)
-                                │ LioStation │ → contact_forces (pairs) [N], touching_bodies (pairs)
-       gripper_command (1)    → └────────────┘ → hand_force (3) [N], penetration (1) [m]
+                                │            │ → lio_state (16: q, v of arm and both fingers), contact_results
+                                │ LioStation │ → contact_forces (pairs) [N], touching_bodies (pairs), hand_force (3) [N]
+       gripper_command (1)    → └────────────┘ → grip_forces (n) [N], penetration (1) [m]
     ```
 
     The gripper closes at a command of 1, opens at 0. Items are in the scenario's order, in W; `contact_pairs` names
@@ -114,6 +115,8 @@ class LioStation(Diagram):
                 port = system.get_output_port(k)
                 builder.ExportOutput(port, port.get_name())
         builder.ExportOutput(query, "geometry_query")
+        builder.ExportOutput(plant.get_state_output_port(lio), "lio_state")
+        builder.ExportOutput(plant.get_contact_results_output_port(), "contact_results")
         builder.BuildInto(self)
         self.set_name("lio_station")
         check_overlaps(plant=plant, scene_graph=scene_graph, root=self.CreateDefaultContext(), scene=self.scene)

@@ -59,7 +59,10 @@ class RunLog:
 def named_signals(raw: Mapping[str, np.ndarray]) -> dict[str, np.ndarray]:
     """The arrays of a log file (DESIGN, "Files that others read") from the raw signals of `RunLog`.
 
-    Wall-clock figures are left out: two runs with one seed give the same file, bit for bit.
+    A row has what was measured at its `time` (`X_BT`, `q`, `v`, `gripper`, `item_poses`, `contact_forces`), and what
+    was wanted and commanded in the control period that ends then: `q_command` is where the arm was to be at `time`,
+    and the row before has the `X_BT_desired` that it was computed for. Wall-clock figures are left out: two runs with
+    one seed give the same file, bit for bit.
     """
     navigation = {name: raw["navigation_state"][:, i] for i, name in enumerate(FIELD_NAMES)}
     joystick, ik = raw["joystick"], raw["ik_status"]
@@ -72,10 +75,12 @@ def named_signals(raw: Mapping[str, np.ndarray]) -> dict[str, np.ndarray]:
         "leg": navigation["leg"].astype(int),
         "stick": joystick[:, :GRIPPER],
         "buttons": joystick[:, GRIPPER:],
+        "person_in_charge": raw["person_in_charge"][:, 0],
         "X_BT_desired": raw["X_BT_desired"],
         "X_BT": raw["X_BT"],
         "q_command": raw["desired_state"][:, :n],
         "q": raw["q"],
+        "v": raw["v"],
         "gripper": raw["gripper_state"][:, 0],
         "gripper_command": navigation["gripper_closed"],
         "correcting": navigation["correcting"],
@@ -95,8 +100,11 @@ def named_signals(raw: Mapping[str, np.ndarray]) -> dict[str, np.ndarray]:
 
 
 def events(raw: Mapping[str, np.ndarray]) -> tuple[np.ndarray, np.ndarray]:
-    """What happened and when: times [s] (E,) and names (E,) such as `correction`, `close`, `leg pick_to_home`."""
-    time, navigation = raw["time"], raw["navigation_state"]
+    """What happened and when: times [s] (E,) and names (E,) such as `correction`, `close`, `leg pick_to_home`.
+
+    A row has what holds since the tick before it, which is when it happened.
+    """
+    time, navigation = np.roll(raw["time"], 1), raw["navigation_state"]
     found: list[tuple[float, str]] = []
 
     def add(field: str, names: Mapping[float, str]) -> None:

@@ -23,13 +23,15 @@ from diagrams.ik_system import OrientationWeightedIk
 from diagrams.joint_pace import at_joint_pace, unhurried
 from diagrams.joystick import JoystickSelector, RecordedJoystick
 from diagrams.joystick_recording import JoystickRecording
-from diagrams.lio_station import START_POSTURE, LioStation
+from diagrams.lio_arm import arm_speeds
+from diagrams.lio_station import START_POSTURE, LioStation, arm_stops
 from diagrams.live_joystick import LiveJoystick, LiveSample
 from diagrams.meshcat_joystick import MeshcatJoystick
 from diagrams.meshcat_notice import MeshcatNotice
 from diagrams.monitor import Monitor
 from diagrams.navigator import CanalNavigator
 from diagrams.operator import SimulatedOperator
+from diagrams.peaks import Peaks
 from diagrams.reach import reach_report
 from diagrams.run_log import RunLog
 from diagrams.scenario import Scenario
@@ -47,6 +49,7 @@ class SharedAutonomy:
     navigator: CanalNavigator
     ik: OrientationWeightedIk
     monitor: Monitor
+    peaks: Peaks
     selector: JoystickSelector
     log: RunLog
     start: StartPosture
@@ -113,13 +116,12 @@ def build_shared_autonomy(
     station = LioStation.AddToBuilder(builder=builder, world=scenario, seed=seed, q0=start.q, filmed=video is not None)
     navigator = CanalNavigator.AddToBuilder(builder=builder, canal=canal, options=navigation, period=period)
     ik = builder.AddNamedSystem("ik", OrientationWeightedIk(solver, q_start=start.q, period=period))
-    monitor = Monitor.AddToBuilder(
+    monitor = Monitor.AddToBuilder(builder=builder, canal=canal, goals=station.goals, options=scenario.monitor)
+    peaks = Peaks.AddToBuilder(
         builder=builder,
-        canal=canal,
-        goals=station.goals,
         contact_pairs=len(station.contact_pairs),
-        X_WB=station.X_WB,
-        options=scenario.monitor,
+        stops=arm_stops(station.plant),
+        speeds=arm_speeds(station.plant),
         period=period,
     )
     alarm = ForceAlarm.AddToBuilder(
@@ -202,9 +204,10 @@ def build_shared_autonomy(
     builder.Connect(navigator.GetOutputPort("orientation_weight"), ik.GetInputPort("orientation_weight"))
     builder.Connect(ik.GetOutputPort("desired_state"), station.GetInputPort("desired_state"))
     builder.Connect(navigator.GetOutputPort("gripper_command"), station.GetInputPort("gripper_command"))
-    for name, port in measured.items():
-        if monitor.HasInputPort(name):
-            builder.Connect(port, monitor.GetInputPort(name))
+    # Both judge by what is, not by a sample of it: they look when it has just been computed.
+    for system, names in ((monitor, JUDGED), (peaks, EXTREMES)):
+        for name in names:
+            builder.Connect(station.GetOutputPort(name), system.GetInputPort(name))
     builder.Connect(navigator.GetOutputPort("navigation_state"), monitor.GetInputPort("navigation_state"))
     builder.Connect(selector.GetOutputPort("person_in_charge"), monitor.GetInputPort("person_in_charge"))
 
@@ -244,12 +247,16 @@ def build_shared_autonomy(
         {
             "navigation_state": navigator.GetOutputPort("navigation_state"),
             "joystick": selector.GetOutputPort("joystick"),
+            "person_in_charge": selector.GetOutputPort("person_in_charge"),
             "X_BT_desired": navigator.GetOutputPort("X_BT_desired"),
             "orientation_weight": navigator.GetOutputPort("orientation_weight"),
             "desired_state": ik.GetOutputPort("desired_state"),
             "ik_status": ik.GetOutputPort("ik_status"),
         }
-        | {name: measured[name] for name in ("q", "X_BT", "gripper_state", "contact_forces", "item_poses")},
+        | {
+            name: station.GetOutputPort(name)
+            for name in ("q", "v", "X_BT", "gripper_state", "contact_forces", "item_poses")
+        },
         period,
         samples={
             "joystick_samples": selector.GetOutputPort("joystick"),
@@ -269,6 +276,7 @@ def build_shared_autonomy(
         navigator,
         ik,
         monitor,
+        peaks,
         selector,
         log,
         start,
@@ -290,7 +298,11 @@ def _show(builder: DiagramBuilder, station: LioStation, meshcat: Meshcat, name: 
         builder.Connect(query, view.GetInputPort("query_object"))
 
 
-MEASURED = ("q", "X_BT", "gripper_state", "contact_forces", "hand_force", "touching_bodies", "penetration")
+MEASURED = ("X_BT", "gripper_state", "contact_forces", "hand_force", "touching_bodies")
 """Ports of the station that are sampled at the control rate."""
-THINGS = ("item_poses", "item_bounds", "item_speeds")
-"""Ports of the station that are looked at 20 times a second."""
+THINGS = ("item_poses", "item_bounds")
+"""Ports of the station that a person looks at, 20 times a second."""
+JUDGED = ("item_poses", "item_bounds", "item_speeds", "grip_forces")
+"""Ports of the station that the monitor judges by."""
+EXTREMES = ("contact_forces", "contact_results", "lio_state", "penetration")
+"""Ports of the station of which the greatest values are kept."""

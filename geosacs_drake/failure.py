@@ -2,15 +2,11 @@
 
 from __future__ import annotations
 
-import numpy as np
 from pydrake.systems.framework import Context
 
 from canal.navigation import Leg, NavigationState
 from diagrams.rest import Rest
 from diagrams.shared_autonomy import SharedAutonomy
-
-IN_HAND = 0.03
-"""[m] A thing whose bounds come nearer to the tool than this, while the gripper is closed, is in the hand."""
 
 
 def describe_failure(error: BaseException, system: SharedAutonomy, rest: Rest, root: Context) -> str:
@@ -44,7 +40,7 @@ def _state(system: SharedAutonomy, rest: Rest, root: Context) -> str:
     if not navigation.running:
         doing = "not running"
     gripper = "closed" if navigation.gripper_closed else "open"
-    held = _in_hand(system, root) if navigation.gripper_closed else []
+    held = _in_hand(system, root)
     awake = rest.names_awake(root)
     return (
         f"leg {Leg(int(navigation.leg)).name.lower()}, disk {navigation.disk:.1f}, {doing}, gripper {gripper}, "
@@ -54,8 +50,5 @@ def _state(system: SharedAutonomy, rest: Rest, root: Context) -> str:
 
 def _in_hand(system: SharedAutonomy, root: Context) -> list[str]:
     station = system.station
-    context = station.GetMyContextFromRoot(root)
-    p_WT = station.X_WB.multiply(station.GetOutputPort("X_BT").Eval(context)[:3])
-    bounds = station.GetOutputPort("item_bounds").Eval(context).reshape(-1, 2, 3)
-    away = np.maximum(bounds[:, 0] - p_WT, p_WT - bounds[:, 1]).max(axis=1)
-    return [item.name for item, gap in zip(station.scene.items, away, strict=True) if gap < IN_HAND]
+    grips = station.GetOutputPort("grip_forces").Eval(station.GetMyContextFromRoot(root))
+    return [item.name for item, force in zip(station.scene.items, grips, strict=True) if force > 0]

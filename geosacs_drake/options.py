@@ -18,15 +18,16 @@ class RunOptions:
 
     operator: str = "simulated"
     """simulated, a person at the page (gamepad, keyboard or person: each means all of its controls), or a file with a
-    recorded joystick (.npz or .csv; a log will do). Only where a person is asked for does the page take commands."""
+    recorded joystick (.npz or .csv). A log (--log) is replayed with its own scenario, canal and seed. Only where a
+    person is asked for does the page take commands."""
     headless: bool = False
     """Without a browser, as fast as it goes, with a progress bar."""
     realtime_rate: Annotated[float, Field(ge=0, lt=1e6)] | None = None
     """Simulated over real time; 0 for as fast as possible. Default: 1 in a browser, 0 headless."""
-    seed: Annotated[int, Field(ge=0, lt=2**63)] = 0
-    """Draws where things lie, and the simulated operator's errors."""
-    duration: Annotated[float, Field(gt=0, lt=1e6)] = 900.0
-    """Longest simulated time [s]; what is not done by then is not done."""
+    seed: Annotated[int, Field(ge=0, lt=2**63)] | None = None
+    """Draws where things lie, and the simulated operator's errors. Default: 0, or that of the log that is replayed."""
+    duration: Annotated[float, Field(gt=0, lt=1e6)] | None = None
+    """Longest simulated time [s]; what is not done by then is not done. Default: 900, or that of the log."""
     items: Literal["soft", "rigid"] | None = None
     """Soft clothes (finite elements) or rigid bodies. Default: as the scenario says; soft in laundry."""
     scenario: str | None = None

@@ -43,7 +43,7 @@ def prepare_task(scenario: Scenario, options: RunOptions) -> tuple[Scenario, Can
             print(line, file=sys.stderr)
         return fitted.scenario, fitted.canal
     canal = prepare_canal(scenario, options)
-    check_leads_to_things(scenario, canal, options.seed)
+    check_leads_to_things(scenario, canal, options.seed or 0)
     return scenario, canal
 
 

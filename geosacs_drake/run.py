@@ -11,22 +11,21 @@ from pydrake.geometry import Meshcat
 from tqdm import tqdm
 
 from canal.stick_directions import stick_directions
-from canal.surface import CanalSurface
 from diagrams.announcements import Announcement
 from diagrams.joystick_recording import load_recording
 from diagrams.layout import base_pose
 from diagrams.meshcat_joystick import CONTROLS
 from diagrams.meshcat_recording import Recording
 from diagrams.meshcat_server import leave, start_meshcat
-from diagrams.scenario import Scenario, load_scenario, with_items
 from diagrams.shared_autonomy import build_shared_autonomy
 from geosacs_drake.command_line import ExitStatus, end, parse_options, status_of
 from geosacs_drake.console.console import Console
 from geosacs_drake.console.mapping_choice import chosen_view
 from geosacs_drake.interrupts import Interrupts, Phase
 from geosacs_drake.options import PEOPLE, RunOptions
-from geosacs_drake.prepare_canal import prepare_task
-from geosacs_drake.run_files import check_run_files, finish
+from geosacs_drake.replay import make_origin
+from geosacs_drake.run_files import finish
+from geosacs_drake.run_task import RunTask, find_task
 from geosacs_drake.simulate import Progress, simulate
 
 
@@ -55,23 +54,19 @@ def run(options: RunOptions, task: str, prog: str) -> ExitStatus:
         SystemExit: at the end, with the status.
     """
     with Interrupts() as interrupts:
-        scenario = load_scenario(options.scenario or task)
-        if options.items is not None:
-            scenario = with_items(scenario, options.items)
-        check_run_files(options, scenario)
-        scenario, canal = prepare_task(scenario, options)
+        found = find_task(options, task, prog)
         with_console = options.console and not options.headless
         page = None
         if not options.headless:
             # Behind the console, Meshcat has an address that nobody knows: it takes commands from whoever connects.
             port = None if with_console else options.port
-            page = start_meshcat(port=port, X_WB=base_pose(scenario.robot), hidden=with_console)
+            page = start_meshcat(port=port, X_WB=base_pose(found.scenario.robot), hidden=with_console)
         console = None
         if page is not None and with_console:
             person = options.operator in PEOPLE
             console = Console(page, person=person, host=options.host, port=options.port)
         # From here on a browser may be connected, for which Meshcat's destructor would wait.
-        status = status_of(lambda: _run(options, scenario, canal, page, console, interrupts, prog), prog)
+        status = status_of(lambda: _run(options, found, page, console, interrupts, prog), prog)
         if console is not None:
             console.close()
         leave(status, page)
@@ -79,13 +74,13 @@ def run(options: RunOptions, task: str, prog: str) -> ExitStatus:
 
 def _run(
     options: RunOptions,
-    scenario: Scenario,
-    canal: CanalSurface,
+    found: RunTask,
     page: Meshcat | None,
     console: Console | None,
     interrupts: Interrupts,
     prog: str,
 ) -> ExitStatus:
+    scenario = found.scenario
     recorded, recording = None, None
     if options.record is not None:
         recorded = start_meshcat(X_WB=base_pose(scenario.robot), hidden=True)
@@ -94,24 +89,24 @@ def _run(
     mapping = options.mapping or scenario.mapping or ("axes" if console is None else "seat")
     seat = options.seat or scenario.seat
     view = chosen_view(mapping, seat)
-    choice = None if console is None else console.choose_mapping(canal, mapping, seat)
+    choice = None if console is None else console.choose_mapping(found.canal, mapping, seat)
     system = build_shared_autonomy(
         scenario=scenario,
-        canal=canal,
+        canal=found.canal,
         operator=operator,
-        seed=options.seed,
+        seed=found.seed,
         meshcat=page,
         recording=recorded,
         video=options.video,
         say=_tell_both(console),
         show=None if console is None else console.show_standing,
         hand=None if console is None else console.control.sample,
-        directions=choice.current()[1] if choice else stick_directions(canal, view) if view else None,
+        directions=choice.current()[1] if choice else stick_directions(found.canal, view) if view else None,
         choose_directions=None if choice is None else choice.current,
     )
     for notice in system.notices:
         print(notice, file=sys.stderr, flush=True)
-    report = None if console is None else console.report(system, canal, scenario)
+    report = None if console is None else console.report(system, found.canal, scenario)
     if console is not None:
         print(f"steer, or watch, at {console.address}", flush=True)
         console.open_browser()
@@ -123,9 +118,11 @@ def _run(
         result = simulate(
             system,
             task=scenario.task,
-            seed=options.seed,
+            scenario=found.name,
+            operator=options.operator,
+            seed=found.seed,
             item_names=[item.name for item in scenario.items],
-            duration=options.duration,
+            duration=found.duration,
             rate=options.rate,
             asked_to_end=lambda: interrupts.asked,
             report=bar.show,
@@ -136,6 +133,7 @@ def _run(
     return finish(
         options=options,
         result=result,
+        origin=make_origin(options, result=result, scenario=scenario, canal=found.canal, duration=found.duration),
         recording=recording,
         film=system.video,
         prog=prog,

@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Callable, Iterator
+from contextlib import suppress
 from functools import partial
 from pathlib import Path
 from typing import Any
 
+from canal.errors import InputError
 from canal.files import write_npz
 from diagrams.cameras import VideoRecorder, film_kind
 from diagrams.meshcat_recording import Recording
@@ -16,6 +18,7 @@ from diagrams.scenario import Scenario
 from geosacs_drake.command_line import ExitStatus
 from geosacs_drake.options import PEOPLE, RunOptions
 from geosacs_drake.outputs import Output, check_outputs, say_failures, write_each
+from geosacs_drake.replay import Origin
 from geosacs_drake.summary import RunResult, describe, summarize, write_summary
 from models import MODELS, SCENARIOS
 
@@ -46,7 +49,8 @@ def inputs_of(options: RunOptions, scenario: Scenario) -> Iterator[Path]:
     name = options.scenario or scenario.task
     yield from (Path(name), SCENARIOS / f"{name}.yaml")
     for name in (*scenario.demonstrations, *([] if scenario.canal is None else [scenario.canal])):
-        yield scenario.resolve(name, MODELS / "demonstrations")
+        with suppress(InputError):  # of a log that is replayed: it needs them no more
+            yield scenario.resolve(name, MODELS / "demonstrations")
     for models, folder in ((scenario.things, "world"), (scenario.items, "items")):
         for model in models:
             yield scenario.resolve(model.model, MODELS / folder, ".sdf")
@@ -56,6 +60,7 @@ def finish(
     *,
     options: RunOptions,
     result: RunResult,
+    origin: Origin,
     recording: Recording | None,
     film: VideoRecorder | None,
     prog: str,
@@ -66,6 +71,7 @@ def finish(
     Args:
         options: name the files.
         result: what happened.
+        origin: what the run was made from, for its log.
         recording: what a page has recorded, if it was asked for.
         film: what the cameras have seen, likewise.
         prog: the command's name, for messages.
@@ -85,7 +91,7 @@ def finish(
     if options.summary is not None and summary:
         writers.append(("--summary", partial(write_summary, options.summary, summary)))
     if options.log is not None:
-        writers.append(("--log", partial(_write_log, options.log, result)))
+        writers.append(("--log", partial(_write_log, options.log, result, origin)))
     if recording is not None and options.record is not None:
         writers.append(("--record", partial(recording.save, options.record)))
     if film is not None:
@@ -102,5 +108,5 @@ def finish(
     return ExitStatus.DONE if summary["success"] else ExitStatus.NOT_DONE
 
 
-def _write_log(path: Path, result: RunResult) -> None:
-    write_npz(path, **named_signals(result.signals))
+def _write_log(path: Path, result: RunResult, origin: Origin) -> None:
+    write_npz(path, **named_signals(result.signals), **origin.arrays())

@@ -6,17 +6,21 @@ import gc
 import time
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from pydrake.systems.analysis import Simulator, SimulatorStatus
 from pydrake.systems.framework import Context, EventStatus
 
 from diagrams.rest import rest_of
+from diagrams.scene import RigidItem
 from diagrams.shared_autonomy import SharedAutonomy
 from geosacs_drake.command_line import one_line
 from geosacs_drake.failure import describe_failure
 from geosacs_drake.summary import RunResult
 
+INTERRUPTED = "interrupted"
+"""The reason of a run that was asked to end."""
 CHUNK_S = 0.5
 """[s] Simulated between two looks at the clock: the summary's worst half second."""
 
@@ -37,6 +41,8 @@ def simulate(
     seed: int,
     item_names: list[str],
     duration: float,
+    scenario: str = "",
+    operator: str = "simulated",
     rate: float = 0.0,
     asked_to_end: Callable[[], bool] = lambda: False,
     report: Callable[[Progress], None] = lambda progress: None,
@@ -51,6 +57,8 @@ def simulate(
         seed: likewise.
         item_names: likewise, in the scenario's order.
         duration: longest simulated time [s].
+        scenario: its name, for the summary.
+        operator: who holds the joystick, likewise.
         rate: real-time rate to aim at; 0 for as fast as possible.
         asked_to_end: looked at after each step of the plant.
         report: called after each half second.
@@ -65,9 +73,10 @@ def simulate(
     rest = rest_of(system.station)
 
     def rest_and_watch(root_context: Context) -> EventStatus:
+        system.peaks.look(root_context)
         status = rest(root_context)
         watch(root_context)
-        return EventStatus.ReachedTermination(system.diagram, "interrupted") if asked_to_end() else status
+        return EventStatus.ReachedTermination(system.diagram, INTERRUPTED) if asked_to_end() else status
 
     simulator.set_monitor(rest_and_watch)
     root = simulator.get_context()
@@ -98,32 +107,35 @@ def simulate(
         # Or all that was built for this run would stay for ever: the monitor names the diagram, which keeps it.
         simulator.clear_monitor()
         gc.unfreeze()
-    return _result(system, root, task, seed, item_names, reason, failure, np.array(factors))
-
-
-def _result(
-    system: SharedAutonomy,
-    root: Context,
-    task: str,
-    seed: int,
-    item_names: list[str],
-    reason: str,
-    failure: str,
-    factors: np.ndarray,
-) -> RunResult:
-    context = system.monitor.GetMyContextFromRoot(root)
-    distance, penetration = system.monitor.GetOutputPort("measures").Eval(context)
     return RunResult(
         task=task,
+        scenario=scenario,
+        operator=operator,
+        items_kind=_kind(system),
         seed=seed,
         reason=reason,
         item_names=item_names,
-        placed_times=system.monitor.GetOutputPort("placed_times").Eval(context).copy(),
-        contact_pairs=system.station.contact_pairs,
-        peak_forces=system.monitor.GetOutputPort("peak_forces").Eval(context).copy(),
-        measured_correction_distance_m=float(distance),
-        max_penetration_m=float(penetration),
         signals=system.log.signals(root),
-        realtime_factors=factors,
+        realtime_factors=np.array(factors),
         failure=failure,
+        **_measured(system, root),
     )
+
+
+def _kind(system: SharedAutonomy) -> str:
+    kinds = {"rigid" if isinstance(item, RigidItem) else "soft" for item in system.station.scene.items}
+    return kinds.pop() if len(kinds) == 1 else "mixed"
+
+
+def _measured(system: SharedAutonomy, root: Context) -> dict[str, Any]:
+    """What the diagram has measured by itself, as arguments of `RunResult`."""
+    monitor, peaks = (s.GetMyContextFromRoot(root) for s in (system.monitor, system.peaks))
+    share, violations = system.peaks.GetOutputPort("joint_peaks").Eval(peaks)
+    return {
+        "placed_times": system.monitor.GetOutputPort("placed_times").Eval(monitor).copy(),
+        "contact_pairs": system.station.contact_pairs,
+        "peak_forces": system.peaks.GetOutputPort("peak_forces").Eval(peaks).copy(),
+        "peak_joint_speed_share": float(share),
+        "bound_violations": int(violations),
+        "max_penetration_m": system.peaks.GetOutputPort("peak_penetration").Eval(peaks).item(),
+    }

@@ -25,7 +25,7 @@ class Bench:
     """A monitor with every input fixed, to be changed one at a time."""
 
     def __init__(self, canal, **options):
-        self.monitor = Monitor(canal=canal, goals=[MarkGoal(MARK)], contact_pairs=2, options=MonitorOptions(**options))
+        self.monitor = Monitor(canal=canal, goals=[MarkGoal(MARK)], options=MonitorOptions(**options))
         self.simulator = Simulator(self.monitor)
         self.context = self.simulator.get_mutable_context()
         self.state = initial_state(canal)
@@ -34,9 +34,7 @@ class Bench:
             item_poses=[*away, 1, 0, 0, 0],
             item_bounds=[*(away - 0.03), *(away + 0.03)],
             item_speeds=[0.0],
-            X_BT=[0.4, 0, 0.6, 1, 0, 0, 0],
-            contact_forces=[0.0, 0.0],
-            penetration=[0.0],
+            grip_forces=[0.0],
         )
         self.navigate(running=1.0)
 
@@ -82,8 +80,7 @@ def test_ends_when_all_is_placed_and_says_when(bench):
 def test_not_placed_while(bench, canal, spoil):
     bench.put_on_mark()
     if spoil == "held":
-        bench.navigate(gripper_closed=1.0)
-        bench.set(X_BT=[*(MARK + [0, 0, 0.05]), 1, 0, 0, 0])
+        bench.set(grip_forces=[0.1])
     elif spoil == "moving":
         bench.set(item_speeds=[0.3])
     else:
@@ -113,22 +110,28 @@ def test_a_stop_ends_the_run_unless_a_person_is_in_charge(canal):
             assert "0 of 1 placed" in status.message()
 
 
-def test_peaks(bench):
-    bench.set(contact_forces=[10.0, 60.0], penetration=[0.002])
-    bench.run(0.1)
-    bench.set(contact_forces=[20.0, 0.0], penetration=[0.001])
+def test_a_closed_gripper_holds_what_it_touches_and_nothing_else(bench, canal):
+    # It rests at the look after 0.2 s with the closed gripper right above it.
+    bench.navigate(gripper_closed=1.0, disk=canal.n_disks - 1.0)
     bench.run(0.2)
-    np.testing.assert_allclose(bench.output("peak_forces"), [20.0, 60.0])
-    assert bench.output("measures")[1] == pytest.approx(0.002)
+    bench.put_on_mark()
+    bench.run(1.0)
+    assert bench.output("placed_times")[0] == pytest.approx(0.25)
 
 
-def test_measured_correction_distance_counts_only_corrections(bench):
-    bench.run(0.1)
-    bench.set(X_BT=[0.4, 0.1, 0.6, 1, 0, 0, 0])
-    bench.run(0.2)
-    assert bench.output("measures")[0] == 0
-    bench.navigate(correcting=1.0)
+def test_a_finger_that_comes_back_without_moving_it_changes_no_time(bench, canal):
+    bench.navigate(disk=canal.n_disks - 1.0)
+    bench.put_on_mark()
+    bench.set(grip_forces=[2.0])
     bench.run(0.3)
-    bench.set(X_BT=[0.4, 0.1, 0.63, 1, 0, 0, 0])
-    bench.run(0.4)
-    assert bench.output("measures")[0] == pytest.approx(0.03)
+    assert bench.output("placed_times")[0] < 0, "it is still held"
+    bench.set(grip_forces=[0.0])
+    bench.run(0.62)
+    free = bench.output("placed_times")[0]
+    assert 0.3 <= free <= 0.36
+    bench.set(grip_forces=[2.0])
+    bench.run(0.8)
+    assert bench.output("placed_times")[0] < 0
+    bench.set(grip_forces=[0.0])
+    bench.run(1.0)
+    assert bench.output("placed_times")[0] == free

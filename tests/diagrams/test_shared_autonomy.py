@@ -79,9 +79,8 @@ def test_a_blow_stops_the_motion_while_it_lasts(canal):
     system.take_first_measurements(root)
     simulator.AdvanceTo(1.5)
     assert navigation(system, root).running
-    port = system.monitor.GetInputPort("contact_forces")
     hold = next(h for h in system.holds if h.get_name() == "measured_contact_forces")
-    blow = np.zeros(port.size())
+    blow = np.zeros(len(system.station.contact_pairs))
     blow[0] = 500.0
     hold.SetVectorState(hold.GetMyMutableContextFromRoot(root), blow)
     simulator.AdvanceTo(1.52)
@@ -92,5 +91,3 @@ def test_a_blow_stops_the_motion_while_it_lasts(canal):
     assert not freed.alarm
     assert not freed.blocked
     assert freed.running
-    peak = system.monitor.GetOutputPort("peak_forces").Eval(system.monitor.GetMyContextFromRoot(root))
-    assert peak[0] == 500.0

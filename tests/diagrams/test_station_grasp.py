@@ -47,7 +47,10 @@ def test_carried_without_slip(name):
     context = simulator.get_mutable_context()
     wanted = station.GetInputPort("desired_state").FixValue(context, np.concatenate([low, np.zeros(6)]))
     station.GetInputPort("gripper_command").FixValue(context, [1.0])
+    grips = station.GetOutputPort("grip_forces")
+    assert grips.Eval(context) == [0], "the gripper is open about it"
     simulator.AdvanceTo(1.2 + AFTER)
+    assert 10 < grips.Eval(context) < 200
 
     def seen_from_the_hand():
         X_BT = vector_to_pose(station.GetOutputPort("X_BT").Eval(context))

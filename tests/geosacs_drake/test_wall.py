@@ -44,7 +44,15 @@ def test_it_stops_at_a_wall_does_not_drive_on_and_comes_back(walled):
     # Start again, twice, and the gripper: none of them leads further in. Then back.
     presses = ((0.5, START), (9.0, START), (9.5, START), (10.0, GRIPPER), (13.0, REVERSE))
     system = build_shared_autonomy(scenario=scenario, canal=canal, operator=thumb(*presses), say=said.append)
-    result = simulate(system, task="wall", seed=0, item_names=[i.name for i in scenario.items], duration=15.0)
+    names = [i.name for i in scenario.items]
+    station, pressing = system.station, []
+
+    def watch(root):
+        pressing.append(station.GetOutputPort("contact_forces").Eval(station.GetMyContextFromRoot(root)).copy())
+
+    result = simulate(system, task="wall", seed=0, item_names=names, duration=15.0, watch=watch)
+    np.testing.assert_array_equal(result.peak_forces, np.max(pressing, axis=0), "of every step of the plant")
+    assert (result.peak_forces >= result.signals["contact_forces"].max(axis=0)).all()
     disk = result.signals["navigation_state"][:, 0]
     time = result.signals["time"]
     force = result.peak_forces[result.contact_pairs.index("lio-wall")]
