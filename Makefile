@@ -4,7 +4,7 @@ PYTHONS := python3.13 python3.12 python3
 PY := .venv/bin/python
 ARGS ?=
 
-.PHONY: setup laundry relocation test lint acceptance fuzz clean
+.PHONY: setup laundry relocation test lint docs acceptance fuzz clean
 
 setup: .venv/.installed
 
@@ -31,6 +31,12 @@ lint: setup
 	$(PY) -m ruff format --check .
 	$(PY) -m mypy
 	$(PY) -m mypy --strict canal
+
+# The documentation, into build/site; its gallery is drawn by the scripts of examples/. A warning fails it.
+docs: setup
+	$(PY) -m pip install --quiet --disable-pip-version-check -c constraints.txt -e ".[docs]"
+	NO_MKDOCS_2_WARNING=1 $(PY) -m mkdocs build --strict
+	@echo "open build/site/index.html"
 
 # What the tests are too short for, in under half an hour on two cores; `make acceptance ARGS="--list"`.
 acceptance: setup

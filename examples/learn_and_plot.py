@@ -1,6 +1,6 @@
-"""Learn a canal from two demonstrations and draw it, as in Fig. 6 of the paper.
+"""Learn a canal from two demonstrations, and draw it.
 
-python examples/learn_and_plot.py [OUT.png]
+Three calls: load the recordings, learn, draw. The picture shows the canal as Fig. 6 of the paper does, from three sides.
 """
 
 import sys

@@ -1,7 +1,6 @@
-"""Travel a canal with a scripted thumb: home, pick, home, place, home, with four corrections on the way.
+"""Travel a canal with a scripted thumb.
 
-    python examples/navigate.py [OUT.png]
-
+The way is home, pick, home, place, home, with four corrections.
 Outwards a correction is kept (fixed ratio); towards home it fades (convergent). While the thumb pushes, the way stands
 still and the point moves on its disk. See sections IV-C to IV-E of the paper.
 """

@@ -1,6 +1,7 @@
-"""The machine stands 0.25 m further on, turned by 20°, the basket is 0.1 m lower: the canal is bent, not taught anew.
+"""A canal bent to new ends.
 
-python examples/retarget.py [OUT.png]
+The machine stands 0.25 m further on, turned by 20°, and the basket is 0.1 m lower. The canal is bent to where they are now,
+not taught anew: its steps are turned by a rotation that passes smoothly from the pick's to the place's.
 """
 
 import sys

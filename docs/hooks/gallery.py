@@ -17,7 +17,6 @@ log = get_plugin_logger("gallery")
 
 SECTIONS = {
     "The figures of the paper": (
-        "teaser",
         "canals",
         "frames",
         "disk_to_disk",
@@ -32,7 +31,6 @@ SECTIONS = {
         "moving_target",
         "own_constraints",
         "reach",
-        "retargeted_run",
         "block_diagram",
     ),
 }
@@ -61,7 +59,9 @@ def on_files(files: Files, config: MkDocsConfig) -> Files:
             printed, picture = _run(script)
             files.append(File.generated(config, f"gallery/{script}.png", abs_src_path=str(picture)))
             page = [f"# {title}\n", f"![{title}]({script}.png)\n", text]
-            if printed:
+            if printed.startswith("| "):
+                page.append(f"{printed}\n")
+            elif printed:
                 page.append(f"It prints:\n\n```text\n{printed}\n```\n")
             page.append(f"## The script\n\n`python examples/{script}.py [OUT.png]`\n\n```python\n{code}\n```\n")
             files.append(File.generated(config, f"gallery/{script}.md", content="\n".join(page)))

@@ -120,7 +120,7 @@ def _commands() -> str:
             text=True,
             check=True,
             cwd=ROOT,
-            env=os.environ | {"COLUMNS": "110", "NO_COLOR": "1", "TERM": "dumb", "PYTHONPATH": str(ROOT)},
+            env=os.environ | {"COLUMNS": "84", "NO_COLOR": "1", "TERM": "dumb", "PYTHONPATH": str(ROOT)},
         ).stdout
         lines.append(f"## {name}\n\n{what[0].upper()}{what[1:]}.\n\n```text\n{_plain(shown)}\n```\n")
     return "\n".join(lines)
