@@ -88,7 +88,8 @@ def align_to(
     Args:
         reference: a directrix, uniform in arc, [m]. Shape (M, 3).
         motion: of as many points.
-        band, smoothing: as in `align`.
+        band: as in `align`.
+        smoothing: as in `align`.
 
     Returns:
         Positions in [0, M - 1] along the demonstration, from 0 to M - 1. Shape (M,).

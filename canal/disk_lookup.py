@@ -44,7 +44,8 @@ class DiskLookup:
         Args:
             centers: [m]. Shape (N, 3).
             radii: [m]. Shape (N,).
-            x_axes, y_axes: unit. Shapes (N, 3).
+            x_axes: unit. Shape (N, 3).
+            y_axes: unit. Shape (N, 3).
             orientations: unit quaternions (w, x, y, z), sign-continuous. Shape (N, 4).
             weights: orientation weights. Shape (N,).
             ellipses: semi-axes and the angle of the first, [m, m, rad]. Shape (N, 3), or None for circles.

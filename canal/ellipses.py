@@ -19,7 +19,8 @@ def disk_ellipses(offsets: np.ndarray, x_axes: np.ndarray, y_axes: np.ndarray, r
 
     Args:
         offsets: aligned points from the centres, [m]. Shape (n, N, 3).
-        x_axes, y_axes: of the disks. Shape (N, 3).
+        x_axes: of the disks, unit. Shape (N, 3).
+        y_axes: likewise. Shape (N, 3).
         radii: [m]. Shape (N,); what they hold beyond the data (a margin) is added to both semi-axes.
 
     Returns:

@@ -6,7 +6,8 @@ import math
 
 import numpy as np
 
-EPSILON = 1e-10  # ε of the paper's Table I
+EPSILON = 1e-10
+"""ε of the paper's Table I: sines and lengths below it count as zero."""
 _WELL_POSED = math.cos(math.radians(80.0))  # x_G says something about a disk up to this angle to it
 
 

@@ -55,7 +55,10 @@ def hold_at_planes(
     """The disks that dip where the path goes towards a plane, with the plane's normal as theirs.
 
     Args:
-        points, tangents, normals, radii: of the disks.
+        points: centres of the disks, [m]. Shape (N, 3).
+        tangents: unit. Shape (N, 3).
+        normals: of the disks, unit. Shape (N, 3).
+        radii: [m]. Shape (N,).
         planes: support planes.
 
     Returns:

@@ -36,7 +36,8 @@ def warping_path(a: np.ndarray, b: np.ndarray, band: float) -> np.ndarray:
     """The pairs (i, j) from (0, 0) to (M - 1, M - 1) of least summed squared distance.
 
     Args:
-        a, b: curves of as many points, [m]. Shapes (M, 3), M ≥ 2.
+        a: a curve, [m]. Shape (M, 3), M ≥ 2.
+        b: another of as many points, [m]. Shape (M, 3).
         band: how far the path may run ahead or behind, as a share of M (Sakoe-Chiba).
 
     Returns:

@@ -100,7 +100,9 @@ class StepProgram:
         """The best step; None if there is none, or if the solver fails.
 
         Args:
-            f, gradient, H: the model, [cost], (n,) and positive definite (n, n).
+            f: the model's value, [cost].
+            gradient: its gradient. Shape (n,).
+            H: its Hessian, positive definite. Shape (n, n).
             q: the posture where it was taken, shape (n,), within the bounds.
             rows: pairs of A (k, n) and a (k,), in any number.
         """

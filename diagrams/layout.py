@@ -39,7 +39,7 @@ def draw_layout(world: World, seed: int) -> tuple[list[Spot], list[Spot | None]]
     """Draw a start for each item, and a mark for each that has a goal; no two nearer than the scenario's spacing.
 
     Args:
-        scenario: its items, their regions, and the things that regions lie on.
+        world: its items, their regions, and the things that regions lie on.
         seed: of the draw.
 
     Returns:
@@ -129,7 +129,7 @@ def make_goals(world: World, marks: list[Spot | None], rest_heights: list[float]
     """What "placed" means for each item.
 
     Args:
-        scenario: where the drum is.
+        world: where the drum is.
         marks: as drawn; None: into the drum.
         rest_heights: of each item's origin above the surface that it stands on [m].
     """

@@ -24,7 +24,7 @@ def check_leads_to_things(world: World, canal: CanalSurface, seed: int) -> None:
     """Refuse a canal whose pick disk is not where the things lie, or whose place disk is not where they belong.
 
     Args:
-        scenario: where things lie and belong.
+        world: where things lie and belong.
         canal: in the robot's base frame.
         seed: of the layout.
 

@@ -88,7 +88,8 @@ def reach_report(
         solver: with the options of the run.
         canal: in the solver's base frame.
         start: of the run; chosen here when not given.
-        rings, spokes: how many points on a disk, beside its centre.
+        rings: how many rings of points on a disk, beside its centre.
+        spokes: how many points on each ring.
         most_disks: how many disks are sampled; those between get what their neighbours have.
         progress: called with how many disks are done, of how many.
 

@@ -1,9 +1,9 @@
 """The block diagram of the whole, from Drake's own description of it.
 
-`build_shared_autonomy` wires a run; Drake's `GetGraphvizString` tells its systems, their ports and what is connected. Inputs are
-on the left of a block, outputs on the right; a wire has the colour of the system that it comes from. What samples a
-measurement of the station once a tick (a zero-order hold for each port) is drawn as part of the wire, and what only logs is
-left out.
+`build_shared_autonomy` wires a run; Drake's `GetGraphvizString` tells its systems, their ports and what is connected.
+Inputs are on the left of a block, outputs on the right; a wire has the colour of the system that it comes from. What
+samples a measurement of the station once a tick (a zero-order hold for each port) is drawn as part of the wire, and
+what only logs is left out.
 """
 
 import re
@@ -18,8 +18,9 @@ from diagrams.shared_autonomy import build_shared_autonomy
 
 PLACES = {
     "SimulatedOperator": (0.0, 0.0, YELLOW), "JoystickSelector": (1.25, 0.35, RED), "CanalNavigator": (2.5, 0.0, BLUE),
-    "OrientationWeightedIk": (3.75, 0.35, PINK), "LioStation": (5.0, 0.0, GREEN), "Monitor": (6.25, -0.6, GREY),
-    "ForceAlarm": (6.25, 1.35, RED),
+    "OrientationWeightedIk": (3.75, 0.35, PINK), "LioStation": (5.0, 0.0, GREEN), "Monitor": (6.25, -0.65, GREY),
+    "ForceAlarm": (6.25, 1.55, RED),
+    "Peaks": (6.25, 0.6, GREY),
 }  # fmt: skip
 WIDTH, LINE = 0.86, 0.125
 system = build_shared_autonomy(scenario=load_scenario("relocation"), canal=shipped_canal("relocation"))
@@ -46,8 +47,10 @@ for key, port, to, entry in wires:
 for ends in used.values():
     ends.sort(key=lambda end: int(end[1][1:]))
 
+for row, kind in enumerate(sorted({kinds[key] for key, _ in used} - set(PLACES))):
+    PLACES[kind] = (2.5 + 1.25 * (row % 3), 1.5 + 0.9 * (row // 3), GREY)  # one that has come since this was laid out
 figure = new_figure(14, 5.4)
-axes = figure.add_subplot(xlim=(-0.75, 6.95), ylim=(-1.55, 2.0))
+axes = figure.add_subplot(xlim=(-0.75, 6.95), ylim=(-1.55, 2.1))
 axes.set_axis_off()
 where = {}
 for key in sorted({key for key, _ in used}):

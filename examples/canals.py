@@ -1,8 +1,8 @@
 """Three canals along one directrix.
 
-A canal is a curve with a disk at every point: the *directrix* $c(s)$, and the *radius* $r(s)$ that says how far a person
-may correct there. Here one curve carries three radii: constant, growing, and wide only in the middle. Cross-sections are
-circles throughout (Fig. 2 of the paper).
+A canal is a curve with a disk at every point: the *directrix* $c(s)$, and the *radius* $r(s)$ that says how far a
+person may correct there. Here one curve carries three radii: constant, growing, and wide only in the middle.
+Cross-sections are circles throughout (Fig. 2 of the paper).
 """
 
 import numpy as np
@@ -25,7 +25,7 @@ for k, (name, radius) in enumerate(
         "(c)  r wide in the middle": 0.03 + 0.10 * np.sin(np.pi * u) ** 2,
     }.items()
 ):
-    # Two "demonstrations" at the distance r on either side: their mean is the curve, and r their largest distance to it.
+    # Two "demonstrations" at the distance r on either side: their mean is the curve, and r their distance to it.
     demonstrations = np.stack([curve + radius[:, None] * across, curve - radius[:, None] * across])
     canal = build_surface(demonstrations, upright, tangents=tangents, moving_time_s=10.0)
     axes = solid(figure, (1, 3, k + 1), view=(24, -68))

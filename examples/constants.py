@@ -1,11 +1,13 @@
 """The constants of the paper, and where each lives in the code.
 
-The table is made from the code itself (Table I of the paper, and section V-A for $h$). The curves show what four of them
-do: the weight of orientation, the speed of a correction, the decay of a ratio, and the knots of the splines. Constants
-that are not the paper's are listed with the [deviations](../deviations.md#constants-that-are-not-the-papers).
+The table is made from the code itself (Table I of the paper, and section V-A for $h$). The curves show what four of
+them do: the weight of orientation, the speed of a correction, the decay of a ratio, and the knots of the splines.
+Constants that are not the paper's are listed with the
+[deviations](../deviations.md#constants-that-are-not-the-papers).
 """
 
 import math
+import re
 
 import numpy as np
 from style import BLUE, GREEN, GREY, PINK, RED, new_figure, save
@@ -31,7 +33,9 @@ ROWS = (
 )
 print("| symbol | value | in the code | what it does |\n|---|---|---|---|")
 for symbol, value, where, what in ROWS:
-    print(f"| {symbol} | {value if isinstance(value, str) else format(value, 'g')} | [`{where}`][{where}] | {what} |")
+    shown = value if isinstance(value, str) else format(value, "g")
+    field = re.sub(r"(Options)\.\w+$", r"\1", where)  # fields are described with their class
+    print(f"| {symbol} | {shown} | [`{where}`][{field}] | {what} |")
 
 figure = new_figure(11, 3)
 weight, stick, decay, knots = figure.subplots(1, 4)

@@ -11,8 +11,21 @@ from dataclasses import replace
 import numpy as np
 from matplotlib.patches import Circle, FancyBboxPatch
 from style import (
-    BLACK, BLUE, GREEN, GREY, SKY, X_AXIS, Y_AXIS, arrows, fit, new_figure, note, save, shipped_canal, solid,
-)  # fmt: skip
+    BLACK,
+    BLUE,
+    GREEN,
+    GREY,
+    SKY,
+    X_AXIS,
+    Y_AXIS,
+    arrows,
+    fit,
+    new_figure,
+    note,
+    save,
+    shipped_canal,
+    solid,
+)
 
 from canal.joystick import JOYSTICK_SIZE
 from canal.navigation import initial_state, step

@@ -1,14 +1,28 @@
 """From one disk to the next: the ratio rule.
 
 The robot is at $p_{s-1}$ on the disk $C_{s-1}$. Its distance from the centre, as a share of the radius, is the ratio
-$\\eta$; its direction in the disk's frame is the angle $\\varphi$. On the next disk both are the same, and the radius is
-that disk's own: $p_s = c_s + \\eta\\,r_s\\,(\\cos\\varphi\\,x_s + \\sin\\varphi\\,y_s)$ (Fig. 4 of the paper, section IV-C).
+$\\eta$; its direction in the disk's frame is the angle $\\varphi$. On the next disk both are the same, and the radius
+is that disk's own: $p_s = c_s + \\eta\\,r_s\\,(\\cos\\varphi\\,x_s + \\sin\\varphi\\,y_s)$ (Fig. 4 of the paper,
+section IV-C).
 """
 
 import numpy as np
 from style import (
-    BLACK, BLUE, GREEN, GREY, SKY, X_AXIS, Y_AXIS, arrows, fit, new_figure, note, save, shipped_canal, solid,
-)  # fmt: skip
+    BLACK,
+    BLUE,
+    GREEN,
+    GREY,
+    SKY,
+    X_AXIS,
+    Y_AXIS,
+    arrows,
+    fit,
+    new_figure,
+    note,
+    save,
+    shipped_canal,
+    solid,
+)
 
 from geosacs_drake.plotting import rim_points
 

@@ -1,10 +1,10 @@
 """Bishop frames beside correction frames, along one curve.
 
-A Bishop frame turns as little as it can from one point to the next, and so drifts away from any direction that a person
-knows. The *correction frame* keeps its x axis as near to the global $x_G$ as continuity allows, so that the same thumb
-does the same thing all along the canal. Tangents are yellow, x axes red, y axes green; the circles mark where the Bishop
-frame's x axis has turned furthest from $x_G$. Below: the angle to $x_G$, and the angle between neighbours (Fig. 3 of the
-paper, section IV-B).
+A Bishop frame turns as little as it can from one point to the next, and so drifts away from any direction that a
+person knows. The *correction frame* keeps its x axis as near to the global $x_G$ as continuity allows, so that the
+same thumb does the same thing all along the canal. Tangents are yellow, x axes red, y axes green; the circles mark
+where the Bishop frame's x axis has turned furthest from $x_G$. Below: the angle to $x_G$, and the angle between
+neighbours (Fig. 3 of the paper, section IV-B).
 """
 
 import numpy as np

@@ -1,9 +1,10 @@
 """From recordings to a canal: pauses, tremor, alignment.
 
-A person who shows a motion by hand hesitates, trembles, and is never twice equally fast. Here one of the recordings is
-given a pause of two seconds and a tremor of half a millimetre. *Soft trimming* advances by how far the hand has moved instead of by
-time, so that the pause vanishes; time warping then aligns what belongs together, and splines smooth it (section V-A of
-the paper). Right: how far the directrix moves because of pause and tremor, with soft trimming and without.
+A person who shows a motion by hand hesitates, trembles, and is never twice equally fast. Here one of the recordings
+is given a pause of two seconds and a tremor of half a millimetre. *Soft trimming* advances by how far the hand has
+moved instead of by time, so that the pause vanishes; time warping then aligns what belongs together, and splines
+smooth it (section V-A of the paper). Right: how far the directrix moves because of pause and tremor, with soft
+trimming and without.
 """
 
 import numpy as np

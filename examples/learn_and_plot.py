@@ -1,6 +1,7 @@
 """Learn a canal from two demonstrations, and draw it.
 
-Three calls: load the recordings, learn, draw. The picture shows the canal as Fig. 6 of the paper does, from three sides.
+Three calls: load the recordings, learn, draw. The picture shows the canal as Fig. 6 of the paper does, from three
+sides.
 """
 
 import sys

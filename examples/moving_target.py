@@ -1,9 +1,9 @@
 """The inverse kinematics alone, on a target that moves.
 
-The tool is to draw a figure of eight, faster and faster, while it points down. Twice: with the largest weight of orientation
-that a canal gives, and with hardly any. Where the joints are not fast enough the tool falls behind, but every command is
-within the limits. With little weight the position is met better, and the tool leans: that is the trade that each disk of a
-canal makes by how much its demonstrations agreed (section V-C of the paper).
+The tool is to draw a figure of eight, faster and faster, while it points down. Twice: with the largest weight of
+orientation that a canal gives, and with hardly any. Where the joints are not fast enough the tool falls behind, but
+every command is within the limits. With little weight the position is met better, and the tool leans: that is the
+trade that each disk of a canal makes by how much its demonstrations agreed (section V-C of the paper).
 """
 
 import numpy as np
@@ -63,7 +63,10 @@ for weight, color in ((15.0, BLUE), (0.02, RED)):
     path = [tool_pose(q).translation() for q in command.data()[:6].T]
     at, name = command.sample_times()[1:], f"$w_o$ = {weight:g}"
     axes.plot(*np.array(path).T, color=color, lw=1.4, zorder=4, label=name)
-    missed, leaning = status.data()[IkStatusField.POSITION_ERROR, 1:], status.data()[IkStatusField.ORIENTATION_ERROR, 1:]
+    missed, leaning = (
+        status.data()[IkStatusField.POSITION_ERROR, 1:],
+        status.data()[IkStatusField.ORIENTATION_ERROR, 1:],
+    )
     speed = np.abs(command.data()[6:, 1:] / arm_speeds(arm)[:, None]).max(axis=0)
     for panel, values in zip(panels, (1e3 * missed, np.degrees(leaning), 100 * speed), strict=True):
         panel.plot(at, values, color=color, lw=1.4, label=name)

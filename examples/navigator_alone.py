@@ -1,8 +1,8 @@
 """The navigator alone, as a Drake system, under a scripted stick.
 
-A recorded joystick is connected to `CanalNavigator`, and nothing else: no robot, no contact. Start is pressed at once, two
-corrections follow, and a reversal in the middle of the way back. Out come the wanted pose of the tool, its orientation
-weight, and the navigation state, all of it logged by Drake's own log sinks.
+A recorded joystick is connected to `CanalNavigator`, and nothing else: no robot, no contact. Start is pressed at
+once, two corrections follow, and a reversal in the middle of the way back. Out come the wanted pose of the tool, its
+orientation weight, and the navigation state, all of it logged by Drake's own log sinks.
 """
 
 import numpy as np

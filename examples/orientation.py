@@ -33,5 +33,7 @@ spread.set_ylabel("spread, as an angle [°]", color=PINK)
 weight.set(ylim=(0, 15.5))
 weight.set_ylabel("weight $w_o$", color=BLUE)
 least, most = canal.orientation_weights.min(), canal.orientation_weights.max()
-print(f"σ from {canal.orientation_sd.min():.3f} to {canal.orientation_sd.max():.3f}, w_o from {most:.1f} to {least:.1f}")
+print(
+    f"σ from {canal.orientation_sd.min():.3f} to {canal.orientation_sd.max():.3f}, w_o from {most:.1f} to {least:.1f}"
+)
 save(figure)

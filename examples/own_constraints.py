@@ -1,8 +1,9 @@
 """The inverse kinematics with a cost and a bound of one's own.
 
-An elbow that stays bent, and a forearm that hardly turns. Each tick solves Drake's quadratic programs over the posture `ik.posture` at its end and the step `ik.step` to it. What
-is added to `ik.program` is part of every tick from then on, beside the limits of position and speed. Orientation weighs
-little here, as where demonstrations disagree, so that there is something left to choose.
+An elbow that stays bent, and a forearm that hardly turns. Each tick solves Drake's quadratic programs over the
+posture `ik.posture` at its end and the step `ik.step` to it. What is added to `ik.program` is part of every tick from
+then on, beside the limits of position and speed. Orientation weighs little here, as where demonstrations disagree, so
+that there is something left to choose.
 """
 
 import sys

@@ -1,9 +1,9 @@
 """Ratio strategies: what becomes of a correction.
 
-On the way out a correction is kept (*fixed*). On the way home it fades: $\\eta = \\eta_f + (\\eta_0 - \\eta_f)\\,e^{-a u^2}$,
-$u$ being the part of the leg that has been travelled. With $\\eta_f = 0$ the path *converges* to the directrix; with
-$\\eta_f = 1$ it *diverges* to the wall. The paper's formula, $e^{-\\lambda(s-1)}$ with $\\lambda = 5\\cdot10^{-4}$, would
-leave most of a correction after half a canal (section IV-C; see the deviations).
+On the way out a correction is kept (*fixed*). On the way home it fades: $\\eta = \\eta_f + (\\eta_0 -
+\\eta_f)\\,e^{-a u^2}$, $u$ being the part of the leg that has been travelled. With $\\eta_f = 0$ the path *converges*
+to the directrix; with $\\eta_f = 1$ it *diverges* to the wall. The paper's formula, $e^{-\\lambda(s-1)}$ with
+$\\lambda = 5\\cdot10^{-4}$, would leave most of a correction after half a canal (section IV-C; see the deviations).
 """
 
 import numpy as np

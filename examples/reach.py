@@ -1,8 +1,9 @@
 """What the arm reaches of a canal.
 
-A canal is shown by hand, and knows nothing of joints: whether the arm follows it everywhere, out to the rims, is asked before
-anything moves. Each sampled disk is tried at its centre and on rings around it, in the branch of postures that reaches most.
-Here the canal of the relocation, moved 0.18 m away from the robot, so that there is something to see.
+A canal is shown by hand, and knows nothing of joints: whether the arm follows it everywhere, out to the rims, is
+asked before anything moves. Each sampled disk is tried at its centre and on rings around it, in the branch of
+postures that reaches most. Here the canal of the relocation, moved 0.18 m away from the robot, so that there is
+something to see.
 """
 
 import numpy as np
@@ -10,8 +11,8 @@ from matplotlib.colors import LinearSegmentedColormap
 from style import BLACK, BLUE, RED, YELLOW, fit, new_figure, save, shipped_canal, solid
 
 from canal.retargeting import retarget
-from diagrams.lio_arm import TCP_FRAME, make_arm_plant
 from diagrams.ik_solver import IkSolver
+from diagrams.lio_arm import TCP_FRAME, make_arm_plant
 from diagrams.reach import reach_report
 from geosacs_drake.plotting import rim_points
 

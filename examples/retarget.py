@@ -1,7 +1,7 @@
 """A canal bent to new ends.
 
-The machine stands 0.25 m further on, turned by 20°, and the basket is 0.1 m lower. The canal is bent to where they are now,
-not taught anew: its steps are turned by a rotation that passes smoothly from the pick's to the place's.
+The machine stands 0.25 m further on, turned by 20°, and the basket is 0.1 m lower. The canal is bent to where they
+are now, not taught anew: its steps are turned by a rotation that passes smoothly from the pick's to the place's.
 """
 
 import sys

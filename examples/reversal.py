@@ -1,9 +1,9 @@
 """Where the path turns back: the y axis that would flip.
 
 A gripper goes down to pick, and up again. The tangent $e_T$ turns over at the bottom, the correction axis $x_s$ does
-not, and so their product $e_T \\times x_s$ points the other way: a thumb that pushed to the right would push to the left
-from one disk to the next. The disks here retrace their way instead, and $y_s$ is negated where it would point more than
-90° away from its predecessor. What looks like a left-handed frame is no fault (section IV-B of the paper).
+not, and so their product $e_T \\times x_s$ points the other way: a thumb that pushed to the right would push to the
+left from one disk to the next. The disks here retrace their way instead, and $y_s$ is negated where it would point
+more than 90° away from its predecessor. What looks like a left-handed frame is no fault (section IV-B of the paper).
 """
 
 import numpy as np

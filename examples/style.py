@@ -65,7 +65,9 @@ def save(figure: Figure) -> None:
     print(f"drawn to {output}")
 
 
-def solid(figure: Figure, place: Any = (1, 1, 1), view: tuple[float, ...] = (22.0, -60.0), axes_off: bool = True) -> Any:
+def solid(
+    figure: Figure, place: Any = (1, 1, 1), view: tuple[float, ...] = (22.0, -60.0), axes_off: bool = True
+) -> Any:
     """Axes in three dimensions, seen without perspective from an elevation, an azimuth, and with a roll [°]."""
     axes: Any = figure.add_subplot(*place, projection="3d", proj_type="ortho", computed_zorder=False)
     axes.view_init(*view)

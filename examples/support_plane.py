@@ -1,7 +1,7 @@
 """A canal that ends on a table.
 
-A hand that demonstrates does not come down exactly upright, so that the last disks are tilted and dip into the table. A
-*support plane* mends this: a disk that dips where the path goes towards the plane takes the plane's normal, and its
+A hand that demonstrates does not come down exactly upright, so that the last disks are tilted and dip into the table.
+A *support plane* mends this: a disk that dips where the path goes towards the plane takes the plane's normal, and its
 neighbours blend over by the same relaxation that keeps disks from crossing (section V-B of the paper, *cross section
 refinements*). Beside a plane that runs along the path, points are clipped instead. Left: as learned; right: with the
 table as a support plane.
@@ -14,7 +14,6 @@ from canal.demonstration import Demonstration, load_demonstration
 from canal.editing import with_support_planes
 from canal.learning import learn_canal
 from canal.refinement import SupportPlane
-from geosacs_drake.plotting import rim_points
 from models import MODELS
 
 askew = []
@@ -33,7 +32,7 @@ for k, (name, shown) in enumerate(canals.items()):
     axes = solid(figure, (1, 2, k + 1), view=(5, -88))
     last = np.arange(shown.n_disks - 34, shown.n_disks, 3)
     circle = np.linspace(0.0, 2 * np.pi, 49)
-    # The circle itself: `rim_points` would be clipped at the plane.
+    # The circle itself; a point of the canal is clipped at its support planes.
     rims = np.array(
         [
             shown.directrix[s] + shown.radii[s] * (np.outer(np.cos(circle), x) + np.outer(np.sin(circle), y))
@@ -52,5 +51,5 @@ for k, (name, shown) in enumerate(canals.items()):
     fit(axes, np.vstack([plane - [0.0, 0.0, 0.05], plane + [0.0, 0.0, 0.2]]), zoom=1.5)
     axes.set_title(name)
     depth = 1e3 * max(0.0, table.offset - rims[:, :, 2].min())
-    print(f"{name}: the rims dip by up to {depth:.0f} mm, where points go {rim_points(shown, last)[:, :, 2].min():.3f} m low")
+    print(f"{name}: the rims dip by up to {depth:.0f} mm; the plane is at {table.offset:.3f} m")
 save(figure)

@@ -1,8 +1,9 @@
 """Both workspaces: demonstrations, directrix, disks, paths and corrections.
 
-Left the relocation, from one table to another; right the laundry, from the basket on its table into the machine. Red: the
-demonstrations. Dotted blue: the directrix. Black: disks. Green: the path that is travelled, home, pick, home, place, home.
-Solid blue: corrections by a scripted thumb; outwards they are kept, on the way home they fade (Fig. 6 of the paper).
+Left the relocation, from one table to another; right the laundry, from the basket on its table into the machine. Red:
+the demonstrations. Dotted blue: the directrix. Black: disks. Green: the path that is travelled, home, pick, home,
+place, home. Solid blue: corrections by a scripted thumb; outwards they are kept, on the way home they fade (Fig. 6 of
+the paper).
 """
 
 import xml.etree.ElementTree as ET
@@ -11,8 +12,18 @@ import numpy as np
 from mpl_toolkits.mplot3d.art3d import Poly3DCollection
 from scipy.spatial.transform import Rotation
 from style import (
-    CORRECTION, DEMONSTRATION, DIRECTRIX, GREY, PATH, draw_canal, fit, new_figure, save, shipped_canal, solid,
-)  # fmt: skip
+    CORRECTION,
+    DEMONSTRATION,
+    DIRECTRIX,
+    GREY,
+    PATH,
+    draw_canal,
+    fit,
+    new_figure,
+    save,
+    shipped_canal,
+    solid,
+)
 
 from canal.tour import tour
 from diagrams.scenario import Scenario, load_scenario

@@ -51,7 +51,9 @@ def on_config(config: MkDocsConfig) -> MkDocsConfig:
 
 def on_files(files: Files, config: MkDocsConfig) -> Files:
     """Run the scripts, and add a page and a picture for each."""
-    overview = ["# Gallery\n\nEach picture is drawn by a short script in `examples/`, anew whenever this site is built.\n"]
+    overview = [
+        "# Gallery\n\nEach picture is drawn by a short script in `examples/`, anew whenever this site is built.\n"
+    ]
     for section, scripts in SECTIONS.items():
         overview.append(f'## {section}\n\n<div class="gallery" markdown>\n')
         for script in scripts:
@@ -94,7 +96,8 @@ def _run(script: str) -> tuple[str, Path]:
         path.stat().st_mtime
         for package in ("canal", "diagrams", "geosacs_drake", "models", "examples")
         for path in (ROOT / package).rglob("*")
-        if path.suffix in (".py", ".yaml", ".npz", ".sdf", ".urdf") and (package != "examples" or path.stem in (script, "style"))
+        if path.suffix in (".py", ".yaml", ".npz", ".sdf", ".urdf")
+        and (package != "examples" or path.stem in (script, "style"))
     )
     if not (printed.exists() and printed.stat().st_mtime > newest):
         log.info("drawing %s", script)

@@ -144,6 +144,7 @@ def _keys() -> str:
     ]
     waiting: list[tuple[str, type]] = [("", Scenario)]
     seen: set[type] = set()
+    described = {Scenario: ""}
     while waiting:
         where, schema = waiting.pop(0)
         if schema in seen:
@@ -157,8 +158,11 @@ def _keys() -> str:
             kind, below = _kind(hints[field.name])
             path = f"{where}.{field.name}" if where else field.name
             waiting += [(path, inner) for inner in below]
-            link = f" ([keys](#{path.replace('.', '').lower()}))" if below and below[0] not in seen else ""
-            lines.append(f"| `{field.name}` | {kind}{link} | {_default(field)} | {_cell(meanings.get(field.name, ''))} |")
+            anchors = [described.setdefault(inner, path).replace(".", "").lower() for inner in below]
+            link = f" ([keys](#{anchors[0]}))" if anchors else ""
+            lines.append(
+                f"| `{field.name}` | {kind}{link} | {_default(field)} | {_cell(meanings.get(field.name, ''))} |"
+            )
         lines.append("")
     return "\n".join(lines)
 
@@ -202,7 +206,11 @@ def _default(field: "dataclasses.Field[typing.Any]") -> str:
         value = field.default_factory()
     if value is None or value in ("", [], (), dataclasses.MISSING) or dataclasses.is_dataclass(value):
         return ""
-    return f"`{value:.4g}`" if isinstance(value, float) else f"`{str(value).lower() if isinstance(value, bool) else value}`"
+    return (
+        f"`{value:.4g}`"
+        if isinstance(value, float)
+        else f"`{str(value).lower() if isinstance(value, bool) else value}`"
+    )
 
 
 def _class_of(schema: type) -> ast.ClassDef:
