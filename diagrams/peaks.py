@@ -8,7 +8,7 @@ from pydrake.multibody.plant import ContactResults
 from pydrake.systems.framework import Context, DiagramBuilder, DiscreteValues, LeafSystem
 
 from diagrams.contacts import is_rigid_contact
-from diagrams.lio_drive import ARM, MOVING
+from diagrams.lio_drive import MOVING
 
 POSITION_TOLERANCE = 1e-4
 """[rad] Beyond a joint's stop that is not yet a violation: Drake's stops are nearly rigid and give way by less."""
@@ -43,8 +43,9 @@ class Peaks(LeafSystem):
             period: of control [s].
         """
         super().__init__()
-        self._low, self._high = stops
-        self._speeds = np.asarray(speeds, dtype=float)
+        low, high = stops
+        self._low, self._high = (low - POSITION_TOLERANCE).tolist(), (high + POSITION_TOLERANCE).tolist()
+        self._speeds = np.asarray(speeds, dtype=float).tolist()
         self._forces = self.DeclareVectorInputPort("contact_forces", contact_pairs)
         self._results = self.DeclareAbstractInputPort("contact_results", Value[ContactResults]())
         self._lio = self.DeclareVectorInputPort("lio_state", 2 * MOVING)
@@ -75,11 +76,15 @@ class Peaks(LeafSystem):
                 context.SetDiscreteState(int(self._peak_forces), np.maximum(peaks, forces))
 
     def _tick(self, context: Context, discrete: DiscreteValues) -> None:
-        state = self._lio.Eval(context)
-        q, v = state[:ARM], state[MOVING : MOVING + ARM]
-        share = (np.abs(v) / self._speeds).max()
-        beyond = np.maximum(self._low - q, q - self._high).max() > POSITION_TOLERANCE or share > 1 + SPEED_TOLERANCE
-        greatest, violations = context.get_discrete_state(self._joints).value()
-        discrete.set_value(self._joints, np.array((max(greatest, share), violations + beyond)))
-        depth = context.get_discrete_state(self._depth).value()
-        discrete.set_value(self._depth, np.maximum(depth, self._penetration.Eval(context)))
+        # Lists, and writing only what changes: numpy's machinery is cold after a step of the plant.
+        state = self._lio.Eval(context).tolist()
+        share = max([abs(v) / most for v, most in zip(state[MOVING:], self._speeds, strict=False)])
+        beyond = share > 1 + SPEED_TOLERANCE
+        for q, low, high in zip(state, self._low, self._high, strict=False):
+            beyond |= not low <= q <= high
+        greatest, violations = context.get_discrete_state(self._joints).value().tolist()
+        if beyond or share > greatest:
+            discrete.set_value(self._joints, np.array((max(share, greatest), violations + beyond)))
+        depth = self._penetration.Eval(context)
+        if depth.item() > context.get_discrete_state(self._depth).value().item():
+            discrete.set_value(self._depth, depth)

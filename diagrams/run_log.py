@@ -11,6 +11,7 @@ from pydrake.systems.primitives import LogVectorOutput, VectorLogSink
 from canal.joystick import GRIPPER, JOYSTICK_PERIOD
 from canal.navigation import FIELD_NAMES, Leg
 from diagrams.ik_system import IkStatusField
+from diagrams.lio_drive import ARM, MOVING
 
 
 class RunLog:
@@ -66,7 +67,7 @@ def named_signals(raw: Mapping[str, np.ndarray]) -> dict[str, np.ndarray]:
     """
     navigation = {name: raw["navigation_state"][:, i] for i, name in enumerate(FIELD_NAMES)}
     joystick, ik = raw["joystick"], raw["ik_status"]
-    n = raw["q"].shape[1]
+    lio = raw["lio_state"]
     named = {
         "time": raw["time"],
         "disk": navigation["disk"],
@@ -78,10 +79,10 @@ def named_signals(raw: Mapping[str, np.ndarray]) -> dict[str, np.ndarray]:
         "person_in_charge": raw["person_in_charge"][:, 0],
         "X_BT_desired": raw["X_BT_desired"],
         "X_BT": raw["X_BT"],
-        "q_command": raw["desired_state"][:, :n],
-        "q": raw["q"],
-        "v": raw["v"],
-        "gripper": raw["gripper_state"][:, 0],
+        "q_command": raw["desired_state"][:, :ARM],
+        "q": lio[:, :ARM],
+        "v": lio[:, MOVING : MOVING + ARM],
+        "gripper": lio[:, ARM],
         "gripper_command": navigation["gripper_closed"],
         "correcting": navigation["correcting"],
         "ik_status": ik[:, IkStatusField.STATUS].astype(int),

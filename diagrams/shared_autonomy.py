@@ -253,10 +253,7 @@ def build_shared_autonomy(
             "desired_state": ik.GetOutputPort("desired_state"),
             "ik_status": ik.GetOutputPort("ik_status"),
         }
-        | {
-            name: station.GetOutputPort(name)
-            for name in ("q", "v", "X_BT", "gripper_state", "contact_forces", "item_poses")
-        },
+        | {name: station.GetOutputPort(name) for name in ("lio_state", "X_BT", "contact_forces", "item_poses")},
         period,
         samples={
             "joystick_samples": selector.GetOutputPort("joystick"),

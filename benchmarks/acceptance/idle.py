@@ -14,6 +14,7 @@ from benchmarks.acceptance.commands import empty_folder
 from benchmarks.canal_quality import RECORDED
 from canal.joystick import JOYSTICK_SIZE, START, STOP
 from diagrams.joystick_recording import JoystickRecording
+from diagrams.lio_drive import ARM
 from diagrams.scenario import load_scenario
 from diagrams.shared_autonomy import build_shared_autonomy
 from geosacs_drake.options import RunOptions
@@ -54,7 +55,7 @@ def idle(scenario: str, state: str, seconds: float) -> Figures:
     figures = {"stands": float(ran), "blocked": float(np.max(result.peak_forces, initial=0.0) > 0)}
     if ran:
         # The pose twitches while a hand presses against a wall; q tells whether the arm creeps.
-        q = signals["q"][late]
+        q = signals["lio_state"][late, :ARM]
         figures |= {
             "creep": float(np.abs(q[-50:].mean(axis=0) - q[:50].mean(axis=0)).max()),
             "real time": (clock[-1][0] - clock[0][0]) / (clock[-1][1] - clock[0][1]),

@@ -6,6 +6,7 @@ import pytest
 from canal.joystick import GRIPPER, JOYSTICK_SIZE, REVERSE, START
 from diagrams.announcements import Event
 from diagrams.joystick_recording import JoystickRecording
+from diagrams.lio_drive import ARM
 from diagrams.scenario import load_scenario
 from diagrams.shared_autonomy import build_shared_autonomy
 from geosacs_drake.options import RunOptions
@@ -66,4 +67,4 @@ def test_it_stops_at_a_wall_does_not_drive_on_and_comes_back(walled):
     assert f"{first.force_n:.0f} N" in first.text
     assert [a.event for a in said].count(Event.IGNORED) == 2, "both starts"
     assert said[-1].event is Event.FREE
-    assert result.signals["gripper_state"][-1, 0] < 0.3, "the gripper closed when told"
+    assert result.signals["lio_state"][-1, ARM] < 0.3, "the gripper closed when told"
