@@ -41,14 +41,19 @@ FORBIDDEN = 1e6
 
 @dataclass(frozen=True)
 class View:
-    """How a person sees the robot: unit vectors in its base frame B, right, up and away all across each other."""
+    """How a person sees the robot: unit vectors in its base frame B, right and up across each other.
+
+    Attributes:
+        right: of the picture. Shape (3,), or (N, 3) where the view turns along the canal.
+        up: likewise.
+    """
 
     right: np.ndarray
     up: np.ndarray
 
     @property
     def away(self) -> np.ndarray:
-        """Into the picture. Shape (3,)."""
+        """Into the picture. As `right`."""
         return np.cross(self.up, self.right)
 
 
@@ -117,7 +122,7 @@ def _carried_frames(canal: CanalSurface) -> tuple[np.ndarray, np.ndarray]:
 
 def _parts(e: np.ndarray, f: np.ndarray, direction: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """A direction's parts in each plane (2, N), and its length in it (N,)."""
-    part = np.stack([e @ direction, f @ direction])
+    part = np.stack([(e * direction).sum(axis=1), (f * direction).sum(axis=1)])
     return part, np.linalg.norm(part, axis=0)
 
 

@@ -181,7 +181,7 @@ class CanalView(LeafSystem):
             meshcat.SetProperty(self._bead(k), "visible", False, context.get_time())
         discrete.set_value(self._key, np.full(KEY_SIZE, np.nan))
         discrete.set_value(self._visible, np.zeros(len(self._beads)))
-        return EventStatus.Succeeded()
+        return self._move_markers(context, discrete)  # what waits for somebody to begin is seen as it will be
 
     def _bead(self, k: int) -> str:
         return f"{self._path}/ahead/{k:03d}"

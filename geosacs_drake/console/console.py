@@ -102,6 +102,8 @@ class Console:
             "mapping": self._mapping,
             "seat": self._seat,
             "base_yaw": float(RollPitchYaw(system.station.X_WB.rotation()).yaw_angle()),
+            "base": system.station.X_WB.translation(),
+            "bindings": self.answers.bindings.all(),
         }
         return StatusReporter(
             system=system,

@@ -6,8 +6,9 @@ import json
 import math
 from collections.abc import Callable
 
+from geosacs_drake.console.bindings import BindingFiles
 from geosacs_drake.console.control import Control
-from geosacs_drake.console.mapping_choice import MappingChoice, chosen_view
+from geosacs_drake.console.mapping_choice import MappingChoice
 from geosacs_drake.console.messages import AnyMessage, Bindings, Drive, Press, Say, Seen, Step, View, in_disc
 
 
@@ -83,6 +84,10 @@ class Answers:
     """What a full stick moves in one sample of 20 Hz [mm]."""
     mapping: MappingChoice | None = None
     """Gets the pages' choices."""
+
+    def __init__(self, bindings: BindingFiles | None = None) -> None:
+        self.bindings = bindings or BindingFiles()
+
     on_word: Callable[[str, str], str] = staticmethod(lambda page, word: "")
 
     def step_samples(self, direction: tuple[float, float], mm: float) -> list[tuple[float, float]]:
@@ -97,12 +102,12 @@ class Answers:
     def change_view(self, page: str, view: View) -> str:
         """A page has chosen how the stick is mapped: the one in control, or any where nobody is."""
         if self.mapping is not None:
-            self.mapping.ask(chosen_view(view.mapping, view.seat, view.right, view.up))
+            self.mapping.choose(view.mapping, view.seat, view.right, view.up, follow=view.follow)
         return ""
 
     def keep_bindings(self, name: str, bindings: dict) -> str:
         """A page wants the bindings of a device kept."""
-        return ""
+        return self.bindings.keep(name, bindings)
 
     def word(self, page: str, word: str) -> str:
         """Another word of a page."""

@@ -6,9 +6,12 @@ import threading
 from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
+from pydrake.math import RollPitchYaw, RotationMatrix
+from scipy.spatial.transform import Rotation
 
 from canal.stick_directions import SEATS, View, stick_directions, view_from
 from canal.surface import CanalSurface
+from diagrams.cameras import X_GRIPPER_CAMERA
 
 
 class MappingChoice:
@@ -34,6 +37,21 @@ class MappingChoice:
             self._asked = view
         self._worker.submit(self._compute, view)
 
+    def choose(
+        self,
+        mapping: str,
+        seat: str,
+        right: tuple[float, float, float] | None = None,
+        up: tuple[float, float, float] | None = None,
+        *,
+        follow: bool = False,
+    ) -> None:
+        """Choose as a page says it; `follow` is the gripper's own view, which turns along the canal."""
+        if follow and mapping == "view":
+            self.ask(gripper_view(self._canal))
+        else:
+            self.ask(chosen_view(mapping, seat, right, up))
+
     def _compute(self, view: View | None) -> None:
         with self._lock:
             if view is not self._asked:  # another choice has been made since
@@ -43,6 +61,18 @@ class MappingChoice:
             if view is self._asked:
                 self._number += 1
                 self._directions = directions
+
+
+def gripper_view(canal: CanalSurface) -> View:
+    """What is right and up in the picture of the gripper's camera, on each disk of a canal."""
+    R_BT = Rotation.from_quat(canal.orientations, scalar_first=True)
+    return View(R_BT.apply(RIGHT_T), R_BT.apply(UP_T))
+
+
+_R_TG = RotationMatrix(RollPitchYaw(0.0, -np.pi / 2, np.pi)).inverse()
+_R_TC = _R_TG.multiply(X_GRIPPER_CAMERA.rotation())
+RIGHT_T, UP_T = _R_TC.col(0), -_R_TC.col(1)
+"""Right and up of that picture in the tool's frame T; the gripper stands as link 6 does, the tool as lio.urdf says."""
 
 
 def chosen_view(mapping: str, seat: str, right: tuple | None = None, up: tuple | None = None) -> View | None:

@@ -1,4 +1,4 @@
-"""Drake's own page of Meshcat, with a small script before its own that says what was drawn."""
+"""Drake's own page of Meshcat, with small scripts before its own: what was drawn, how well, from where."""
 
 from __future__ import annotations
 
@@ -8,6 +8,8 @@ from pathlib import Path
 from pydrake.common import FindResourceOrThrow
 
 PAGE = Path(__file__).parent / "page"
+SCRIPTS = ("meshcat_quality.js", "meshcat_frame.js", "meshcat_camera.js")
+"""Ours, which run before Meshcat's own."""
 
 
 @functools.cache
@@ -18,7 +20,7 @@ def meshcat_page(name: str) -> tuple[str, bytes]:
     if name.endswith(".ico"):
         return "image/x-icon", _drakes("meshcat.ico")
     page = _drakes("meshcat.html").decode()
-    script = (PAGE / "meshcat_frame.js").read_text()
+    script = "\n".join((PAGE / name).read_text() for name in SCRIPTS)
     start = "<head>"
     if start not in page:  # pragma: no cover
         raise RuntimeError("Meshcat's page has no head: this version of Drake has another one")

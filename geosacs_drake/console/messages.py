@@ -60,6 +60,8 @@ class View(Message):
     type: Literal["view"]
     mapping: Literal["axes", "seat", "view"]
     seat: Literal["front", "left", "right", "behind"] = "front"
+    follow: bool = False
+    """Whether the view is the gripper's."""
     right: Triple | None = None
     up: Triple | None = None
 

@@ -25,8 +25,8 @@ from geosacs_drake.console.handlers import ROUTES, SETTINGS, LinkSocket
 from geosacs_drake.console.link import Answers
 
 FIRST_PORT, LAST_PORT = 7000, 7999
-STATUS_PERIOD_S = 0.05
-"""[s] Between two looks whether there is a new status."""
+STATUS_PERIOD_S = 0.08
+"""[s] Between two that pages are told: each one has the whole page drawn anew."""
 HISTORY = 60
 """Events that a page gets to see that comes late."""
 
@@ -157,7 +157,7 @@ class ConsoleServer:
     async def _broadcast(self) -> None:
         told, again = 0, 0.0
         while True:
-            await asyncio.sleep(STATUS_PERIOD_S / 2)
+            await asyncio.sleep(STATUS_PERIOD_S)
             with self._lock:
                 number, status = self._number, self._status
             now = time.monotonic()

@@ -3,7 +3,7 @@
 const SIZE = 84;
 
 // Where a person looks from, in the robot's base frame: which way is right, which is up.
-export const SEATS = {
+const SEATS = {
   front: { right: [0, 1, 0], up: [0, 0, 1] },
   behind: { right: [0, -1, 0], up: [0, 0, 1] },
   left: { right: [-1, 0, 0], up: [0, 0, 1] },
@@ -15,7 +15,7 @@ const dot = (a, b) => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 // A lying disk is looked at a little from above, or nothing of it were to be seen.
 const TILT = 35 * Math.PI / 180;
 
-export function basis(seat) {
+function basis(seat) {
   const { right, up } = seat;
   const away = [up[1] * right[2] - up[2] * right[1], up[2] * right[0] - up[0] * right[2], up[0] * right[1] - up[1] * right[0]];
   const c = Math.cos(TILT), s = Math.sin(TILT);
@@ -35,8 +35,8 @@ export class Disk {
     this.part = (id) => svg.querySelector(`#disk-${id}`);
   }
 
-  show(status, seat) {
-    const view = basis(seat);
+  show(status, camera, seat) {
+    const view = camera ?? basis(SEATS[seat]);
     const [x, y] = status.axes.map((axis) => [SIZE * dot(axis, view.right), -SIZE * dot(axis, view.up)]);
     const at = (u, v) => [u * x[0] + v * y[0], u * x[1] + v * y[1]];
     const rim = Array.from({ length: 49 }, (_, k) => at(Math.cos(k * Math.PI / 24), Math.sin(k * Math.PI / 24)));

@@ -1,7 +1,7 @@
 // The link to the robot: numbered messages there, status back. It reconnects by itself.
 
 const RETRY_MS = 500;
-const SILENT_MS = 1500;  // without a status the link counts as lost
+const SILENT_MS = 3000;  // without a status the link counts as lost
 
 export class Link extends EventTarget {
   constructor() {

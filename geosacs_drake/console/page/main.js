@@ -1,11 +1,16 @@
 // Wires the page: the link, the hands, what is shown.
 
-import { Disk, SEATS } from "./disk.js";
+import { Camera } from "./camera.js";
+import { Devices } from "./devices.js";
+import { Disk } from "./disk.js";
 import { showEnd } from "./end.js";
+import { Gamepads } from "./gamepads.js";
 import { Keys } from "./keys.js";
 import { Link } from "./link.js";
 import { Pad } from "./pad.js";
-import { settings } from "./settings.js";
+import { Scanning } from "./scanning.js";
+import { onChange, settings, suggest } from "./settings.js";
+import { openSettings } from "./settings_dialog.js";
 import { clearHistory, showEvent, showStatus } from "./status.js";
 import { Stick } from "./stick.js";
 
@@ -14,14 +19,19 @@ const byId = (id) => document.getElementById(id);
 const link = new Link();
 const stick = new Stick(link);
 const disk = new Disk(byId("disk"), byId("disk-words"));
+const camera = new Camera(byId("frame"), byId("view"));
 let status = null, about = {};
 
 const press = (button) => {
   if (button !== "start") stick.centre();
   link.send({ type: "press", button });
 };
-const keys = new Keys(stick, press);
 new Pad(byId("pad"), byId("knob"), stick);
+const scanning = new Scanning(stick, byId("pad"));
+const keys = new Keys(stick, press, (event, down) => scanning.key(event, down));
+const kept = new Map();
+const gamepads = new Gamepads(stick, press, kept);
+new Devices(byId("devices"), byId("binding"), gamepads, link);
 
 for (const name of ["start", "stop", "gripper", "reverse"]) byId(name).addEventListener("click", () => press(name));
 byId("take").addEventListener("click", () => {
@@ -30,6 +40,25 @@ byId("take").addEventListener("click", () => {
   stick.centre();
   link.send({ type: others ? "take" : !status.begun ? "watch" : status.person ? "hand_back" : "take" });
 });
+byId("settings").addEventListener("click", () => {
+  stick.centre();
+  openSettings(byId("settings-dialog"));
+});
+
+// Which way is right and up: told whenever it changes, or when this page comes to steer.
+const tellView = () => link.send({ type: "view", mapping: settings.mapping, seat: settings.seat, follow: settings.view === "gripper", ...camera.basis });
+let mapped = "";
+onChange(() => {
+  gamepads.switched = scanning.on ? (name, down) => scanning.gamepad(name, down) : null;
+  const now = `${settings.mapping} ${settings.seat} ${settings.view}`;
+  if (now === mapped) return;
+  mapped = now;
+  if (settings.view === "seat") camera.look();
+  tellView();
+});
+gamepads.switched = scanning.on ? (name, down) => scanning.gamepad(name, down) : null;
+camera.addEventListener("turned", () => { if (settings.mapping === "view") tellView(); });
+
 // A button that a mouse has pressed gives the keys back.
 document.addEventListener("click", (event) => {
   if (event.detail > 0) event.target.closest?.("button, summary")?.blur();
@@ -40,7 +69,12 @@ frame.addEventListener("load", () => keys.listen(frame.contentWindow));
 
 link.addEventListener("welcome", ({ detail }) => {
   about = detail.about;
-  document.title = `${about.description ?? "GeoSACS"}`;
+  document.title = about.description ?? "GeoSACS";
+  suggest({ mapping: about.mapping, seat: about.seat });
+  [camera.yaw, camera.position] = [about.base_yaw ?? 0, about.base ?? [0, 0, 0]];
+  for (const { device, ...bindings } of Object.values(about.bindings ?? {})) if (!kept.has(device)) kept.set(device, bindings);
+  camera.look();
+  tellView();
   clearHistory();
   detail.history.forEach(showEvent);
   notice("");
@@ -52,9 +86,10 @@ link.addEventListener("status", ({ detail }) => {
     document.getElementById("headline").textContent = "Getting ready";
     return;
   }
+  if (status && status.holder !== detail.holder && detail.holder === link.you) tellView();
   status = detail;
   showStatus(status, link.you);
-  disk.show(status, SEATS[settings.seat]);
+  disk.show(status, settings.mapping === "view" ? camera.basis : null, settings.seat);
 });
 link.addEventListener("event", ({ detail }) => showEvent(detail));
 link.addEventListener("told", ({ detail }) => notice(detail.text, 4000));

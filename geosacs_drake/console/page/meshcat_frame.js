@@ -25,15 +25,20 @@
         this.onmessage?.({ data: data.slice(at + 4, at + 4 + size) });
         at += 4 + size;
       }
+      quality.prepare();
+      const came = performance.now();
       // Meshcat draws in the next frame; the one after it begins when that is done.
       requestAnimationFrame(() => requestAnimationFrame(() => {
+        quality.took(performance.now() - came);
         if (this.socket.readyState === Native.OPEN) this.socket.send(String(number));
         window.parent.postMessage({ drawn: number }, location.origin);
       }));
     }
   }
+
   for (const name of ["CONNECTING", "OPEN", "CLOSING", "CLOSED"]) OneWay[name] = Native[name];
   window.WebSocket = OneWay;
+
   // What Meshcat lays over its picture is not for an operator.
   const style = document.createElement("style");
   style.textContent = "#stats-plot, #status-message, .lil-gui, .dg { display: none !important; } canvas { outline: none; }";

@@ -9,18 +9,25 @@ export const DEFAULTS = {
   dead_zone: 0.12,
   invert_x: false,
   invert_y: false,
-  mapping: "seat",      // axes, seat, view
+  mapping: "view",      // axes, seat, view
   seat: "front",        // front, left, right, behind
   scanning: "off",      // off, one, two
   dwell_s: 1.5,
+  view: "room",         // see camera.js
 };
 
 export const settings = { ...DEFAULTS, ...stored() };
 const listeners = new Set();
 
+// What the run was started with, unless the person has chosen something else here before.
+export function suggest(changes) {
+  const kept = stored();
+  for (const [key, value] of Object.entries(changes)) if (value !== undefined && !(key in kept)) settings[key] = value;
+}
+
 export function change(changes) {
   Object.assign(settings, changes);
-  try { localStorage.setItem(KEY, JSON.stringify(settings)); } catch { /* it lasts as long as the page, then */ }
+  try { localStorage.setItem(KEY, JSON.stringify({ ...stored(), ...changes })); } catch { /* it lasts as long as the page, then */ }
   for (const listener of listeners) listener(settings);
 }
 

@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import pytest
 from waiting import wait_until
 
+from geosacs_drake.console.bindings import BindingFiles
 from geosacs_drake.console.control import Control
+from geosacs_drake.console.link import Answers
 from geosacs_drake.console.server import ConsoleServer
 
 if TYPE_CHECKING:
@@ -43,9 +46,10 @@ STATUS: dict[str, Any] = {
 
 
 @pytest.fixture
-def server() -> Iterator[ConsoleServer]:
+def server(tmp_path: Path) -> Iterator[ConsoleServer]:
     """A server on a free port; Meshcat is not there."""
-    server = ConsoleServer(Control(), port=0, meshcat_address=("127.0.0.1", 9))
+    answers = Answers(BindingFiles(tmp_path / "controllers"))
+    server = ConsoleServer(Control(), answers, port=0, meshcat_address=("127.0.0.1", 9))
     server.start()
     yield server
     server.stop()
