@@ -27,9 +27,9 @@ RIGID = (
 )
 SOFT_SHARE = 0.05
 LIMITS = np.radians([170.0, 110.0, 115.0, 170.0, 115.0, 170.0])
-"""[rad] of the joints (SPEC section 6)."""
+"""[rad] of the joints (docs/method.md, 6)."""
 SPEED = math.radians(95.0)
-"""[rad/s] of each joint (SPEC section 6)."""
+"""[rad/s] of each joint (docs/method.md, 6)."""
 GIVES = 0.02
 """[rad] by which a contact may press a drive beyond what it was told."""
 SHORTEST, LONGEST = 8.0, 25.0

@@ -104,7 +104,15 @@ def align_to(
 
 
 def sample(values: np.ndarray, at: np.ndarray) -> np.ndarray:
-    """Values between the samples, linearly. `values` (M, k), `at` in [0, M - 1]; shape (len(at), k)."""
+    """Values between the samples, linearly. `values` (M, k), `at` in [0, M - 1]; shape (len(at), k).
+
+    Args:
+        values: rows. Shape (M, k).
+        at: places in [0, M - 1]. Shape (P,).
+
+    Returns:
+        Shape (P, k).
+    """
     grid = np.arange(len(values), dtype=float)
     return np.column_stack([np.interp(at, grid, column) for column in values.T])
 

@@ -17,12 +17,15 @@ from canal.reading import as_numbers, read_csv, read_npz
 
 SAMPLE_RATE_HZ = 20.0  # the paper records at 20 Hz; assumed where a file has no time stamps
 MIN_SAMPLES = 4
+"""Fewest samples of a demonstration: a cubic has four coefficients."""
 CSV_HEADER = "t,x,y,z,qw,qx,qy,qz"
+"""First line of a CSV file."""
 LARGEST_COORDINATE_M = 10.0  # from the robot's base; what an arm reaches is beyond this in centimetres or inches
 SMALLEST_STEP_S = 1e-5  # no tracker is faster than 100 kHz: what is closer in time is broken, or another unit
 SHORTEST_QUATERNION, LONGEST_QUATERNION = 0.5, 2.0  # rounding makes 0.999, a broken sample 0
 METRES = {"m": 1.0, "cm": 1e-2, "mm": 1e-3, "in": 0.0254}
 SECONDS = {"s": 1.0, "ms": 1e-3, "us": 1e-6, "ns": 1e-9}
+"""Units that a recording may be in, in metres and in seconds."""
 _WHAT = "a demonstration (.npz or .csv)"
 
 
@@ -205,7 +208,12 @@ def _without_bad_samples(
 
 
 def save_demonstration(path: str | os.PathLike[str], demonstration: Demonstration) -> None:
-    """Write a demonstration as `.npz` (or `.csv`, by the suffix), to a temporary file that is then renamed."""
+    """Write a demonstration as `.npz` (or `.csv`, by the suffix), to a temporary file that is then renamed.
+
+    Args:
+        path: of the file; its ending says which kind.
+        demonstration: what is written.
+    """
     path = Path(path)
     d = demonstration
     if path.suffix.lower() == ".csv":

@@ -15,6 +15,7 @@ MIN_RADIUS = 1e-9
 """[m] Below this a disk is a point: there is nothing to correct, and the ratio is carried through it."""
 
 Floats = Sequence[float]
+"""A few plain floats: numpy costs ten times as much for single disks."""
 
 
 class DiskLookup:
@@ -96,7 +97,12 @@ class DiskLookup:
         return rows[i][3] + t * (rows[i + 1][3] - rows[i][3])
 
     def extent(self, disk: float, phi: float) -> float:
-        """Distance from the centre to the rim in the direction φ [rad], [m]."""
+        """Distance from the centre to the rim in the direction φ [rad], [m].
+
+        Args:
+            disk: continuous index.
+            phi: φ, [rad].
+        """
         if self._ellipses is None:
             return self.radius(disk)
         i, t = self.at(disk)
@@ -104,7 +110,16 @@ class DiskLookup:
         return first + t * (_polar(self._ellipses[i + 1], phi) - first)
 
     def point(self, disk: float, eta: float, phi: float) -> tuple[float, float, float]:
-        """The point (η, φ) of a disk, clipped at the support planes, [m]."""
+        """The point (η, φ) of a disk, clipped at the support planes, [m].
+
+        Args:
+            disk: continuous index.
+            eta: ratio η in [0, 1].
+            phi: φ, [rad].
+
+        Returns:
+            x, y and z in B, [m].
+        """
         cx, cy, cz, r, ax, ay, az, bx, by, bz = self.frame(disk)
         if self._ellipses is not None:
             r = self.extent(disk, phi)
@@ -136,7 +151,12 @@ class DiskLookup:
         return self._weights[i] + t * (self._weights[i + 1] - self._weights[i])
 
     def disk_coordinates(self, disk: float, p: Floats | np.ndarray) -> tuple[float, float]:
-        """(η, φ [rad]) of the projection of a point [m] on a disk; zeros where the disk is a point."""
+        """(η, φ [rad]) of the projection of a point [m] on a disk; zeros where the disk is a point.
+
+        Args:
+            disk: continuous index.
+            p: the point in B, [m]. Shape (3,).
+        """
         cx, cy, cz, r, ax, ay, az, bx, by, bz = self.frame(disk)
         px, py, pz = p
         dx, dy, dz = px - cx, py - cy, pz - cz

@@ -39,6 +39,11 @@ def reverse(canal: CanalSurface) -> CanalSurface:
 def cut(canal: CanalSurface, first: float, last: float) -> CanalSurface:
     """The part of a canal between two continuous disks, with its own disks, home and moving time.
 
+    Args:
+        canal: the surface.
+        first: continuous index of the new first disk.
+        last: of the new last one, at least two further on.
+
     Raises:
         InputError: the disks are out of range or in the wrong order.
     """
@@ -62,6 +67,10 @@ def join(first: CanalSurface, second: CanalSurface) -> CanalSurface:
 
     Demonstrations are paired by where they end and begin; where their numbers differ, each is taken as often as it
     takes. Near the joint both give way to a bridge that takes over their directions.
+
+    Args:
+        first: from pick on.
+        second: on to place; begins where the first ends.
 
     Raises:
         InputError: the second does not begin where the first ends.
@@ -127,6 +136,10 @@ def join(first: CanalSurface, second: CanalSurface) -> CanalSurface:
 def add_demonstration(canal: CanalSurface, demonstration: Demonstration) -> CanalSurface:
     """A canal with one more demonstration, aligned to its directrix; the recorded old ones are not needed.
 
+    Args:
+        canal: learned.
+        demonstration: in the same frame, from pick to place.
+
     Raises:
         InputError: the demonstration does not move, or runs from place to pick.
     """
@@ -150,6 +163,10 @@ def add_demonstration(canal: CanalSurface, demonstration: Demonstration) -> Cana
 
 def with_support_planes(canal: CanalSurface, planes: tuple[SupportPlane, ...]) -> CanalSurface:
     """The canal refined at these support planes as well as at its own: same disks, but for their normals and frames.
+
+    Args:
+        canal: learned.
+        planes: in B, besides those that it has.
 
     Raises:
         InputError: a centre lies beyond a plane.
@@ -229,7 +246,16 @@ def own_options(canal: CanalSurface) -> LearningOptions:
 
 
 def beyond_data(canal: CanalSurface, at: np.ndarray, margin: float | None = None) -> np.ndarray:
-    """What a canal's radii hold beyond its data and a margin (its own if None) at continuous disks, [m]."""
+    """What a canal's radii hold beyond its data and a margin (its own if None) at continuous disks, [m].
+
+    Args:
+        canal: the surface.
+        at: continuous disks. Shape (P,).
+        margin: [m]; None for the canal's own.
+
+    Returns:
+        Shape (P,).
+    """
     ball = np.linalg.norm(canal.demonstrations - canal.directrix, axis=2).max(axis=0)
     margin = canal.options.margin if margin is None else margin
     return np.asarray(np.interp(at, np.arange(canal.n_disks), np.maximum(canal.radii - ball - margin, 0.0)))

@@ -137,7 +137,15 @@ def _next_x(before: np.ndarray, normal: np.ndarray, projected: np.ndarray, size:
 
 
 def project(vector: np.ndarray, normal: np.ndarray) -> np.ndarray:
-    """The unit vector along the part of `vector` across the unit `normal`; some such vector if there is none."""
+    """The unit vector along the part of `vector` across the unit `normal`; some such vector if there is none.
+
+    Args:
+        vector: any. Shape (3,).
+        normal: unit. Shape (3,).
+
+    Returns:
+        Unit, across the normal. Shape (3,).
+    """
     across = vector - (vector @ normal) * normal
     size = math.sqrt(across @ across)
     if size <= EPSILON:

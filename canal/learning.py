@@ -23,6 +23,7 @@ from canal.trimming import trim
 
 DISK_SPACING_M = 0.005
 FEWEST_DISKS, MOST_DISKS = 200, 1000
+"""One disk in 5 mm of the directrix, within these bounds of N_f."""
 SHORT_M = 0.05  # from pick to place; a hand need not be helped over less
 N_POINTS = 201  # M, points of a demonstration during alignment
 WIDE_SPREAD = 2 * math.sin(math.radians(45.0) / 4)  # σ of 45° to either side: their mean is shown by nobody

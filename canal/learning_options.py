@@ -17,7 +17,6 @@ from canal.errors import InputError
 from canal.options import options, read_options
 from canal.refinement import SupportPlane
 
-# Where the paper says or implies something else than our defaults; docs/deviations.md has reasons and measurements.
 PAPER: dict[str, Any] = {
     "interpolate": True,  # V-A: a spline through the points that the step filter leaves
     "soft_trimming": False,  # V-A knows no trimming: pauses are left to the alignment
@@ -28,7 +27,9 @@ PAPER: dict[str, Any] = {
     "cap_x_turn": False,  # IV-B: x_s is what the slerp says
     "y_window": 10,  # IV-B
 }
+"""Where the paper says or implies something else than our defaults; docs/deviations.md has reasons and measurements."""
 PRESETS: dict[str, dict[str, Any]] = {"measured": {}, "paper": PAPER}
+"""By name: the options that differ from the defaults."""
 
 
 def _odd(n_disks: int) -> int:

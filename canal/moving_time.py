@@ -8,8 +8,8 @@ SLOW = 0.1  # share of the usual speed below which a hand may be pausing; tremor
 HALF_WINDOW_S = 0.1  # [s] speeds are differences over this to either side: 0.1 mm of noise then makes 0.7 mm/s
 TREMOR_M = 0.015  # [m] a hand that rests stays within this; its slow tremor has 5 to 10 mm
 FEWEST_SAMPLES = 2  # to either side, in slower recordings
-# A hand that sets off takes 2 d/v (evenly accelerated) to 3 d/v (minimum jerk) for its first way d up to a speed v.
 ONSET = 2.5
+"""A hand that sets off takes 2 d/v (evenly accelerated) to 3 d/v (minimum jerk) for its first way d up to a speed v."""
 
 
 def moving_time(poses: np.ndarray, dt: float) -> float:

@@ -136,7 +136,12 @@ def _on_disk(
 
 
 def disks_per_second(canal: CanalSurface, options: NavigationOptions) -> float:
-    """Speed of progress: a whole pass in the mean moving time of the demonstrations, scaled."""
+    """Speed of progress: a whole pass in the mean moving time of the demonstrations, scaled.
+
+    Args:
+        canal: that is travelled.
+        options: of the travel.
+    """
     return (canal.n_disks - 1) * options.speed_scale / canal.moving_time_s
 
 

@@ -33,6 +33,7 @@ class Leg(IntEnum):
     PICK_TO_HOME = 1
     HOME_TO_PLACE = 2
     PLACE_TO_HOME = 3
+    """0 and 2 lead outwards, where a correction is kept; 1 and 3 homewards, where it fades."""
 
     @property
     def direction(self) -> int:

@@ -27,14 +27,25 @@ def mean_orientation(quaternions: np.ndarray) -> np.ndarray:
 
 
 def orientation_spread(quaternions: np.ndarray, mean: np.ndarray) -> np.ndarray:
-    """σ_q(s): root mean square of the absolute distance min(|q - q̄|, |q + q̄|) to the mean. Shape (N,)."""
+    """σ_q(s): root mean square of the absolute distance min(|q - q̄|, |q + q̄|) to the mean. Shape (N,).
+
+    Args:
+        quaternions: unit, (w, x, y, z), of n demonstrations. Shape (n, N, 4).
+        mean: unit. Shape (N, 4).
+    """
     apart = np.sum((quaternions - mean) ** 2, axis=2)
     across = np.sum((quaternions + mean) ** 2, axis=2)
     return np.sqrt(np.mean(np.minimum(apart, across), axis=0))
 
 
 def orientation_weight(spread: np.ndarray, alpha: float = ALPHA, beta: float = BETA) -> np.ndarray:
-    """w_o(s) = exp(-α (σ_q(s) - β)), in (0, b ≈ 15]. Shape (N,)."""
+    """w_o(s) = exp(-α (σ_q(s) - β)), in (0, b ≈ 15]. Shape (N,).
+
+    Args:
+        spread: σ_q. Shape (N,).
+        alpha: α of the paper's Table I.
+        beta: β of the paper's Table I.
+    """
     return np.exp(-alpha * (spread - beta))
 
 

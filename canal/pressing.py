@@ -60,7 +60,13 @@ def feel(
 
 
 def presses_along(canal: CanalSurface, state: NavigationState, way: int) -> bool:
-    """Whether a travel in the direction `way` (±1) presses. Never true of both ways."""
+    """Whether a travel in the direction `way` (±1) presses. Never true of both ways.
+
+    Args:
+        canal: that is travelled.
+        state: where the robot is, and what presses.
+        way: +1 towards place, -1 towards pick.
+    """
     if not state.alarm:
         return False
     # Of the chord around the point, so that what one way presses the other relieves, at any kink.
@@ -74,7 +80,16 @@ def presses_along(canal: CanalSurface, state: NavigationState, way: int) -> bool
 
 
 def cut_stick(canal: CanalSurface, state: NavigationState, stick: tuple[float, float]) -> tuple[float, float]:
-    """The stick without the part that presses."""
+    """The stick without the part that presses.
+
+    Args:
+        canal: that is travelled.
+        state: where the robot is, and what presses.
+        stick: k_x and k_y.
+
+    Returns:
+        k_x and k_y of what is left.
+    """
     if not state.alarm:
         return stick
     x, y = canal.axes(state.disk)
@@ -86,7 +101,12 @@ def cut_stick(canal: CanalSurface, state: NavigationState, stick: tuple[float, f
 
 
 def presses(state: NavigationState, moved: Sequence[float]) -> bool:
-    """Whether a displacement of the tool [m] in the base frame presses. Shape (3,)."""
+    """Whether a displacement of the tool [m] in the base frame presses. Shape (3,).
+
+    Args:
+        state: what presses.
+        moved: in B, [m]. Shape (3,).
+    """
     into = sum(m * p for m, p in zip(moved, _press(state), strict=True))
     return bool(state.alarm) and into > GLANCING * math.hypot(*moved)
 

@@ -76,12 +76,22 @@ def canal_quality(canal: CanalSurface) -> CanalQuality:
 
 
 def angles(a: np.ndarray, b: np.ndarray) -> np.ndarray:
-    """Angle between unit vectors, row by row, [degrees]. Shape (N,)."""
+    """Angle between unit vectors, row by row, [degrees]. Shape (N,).
+
+    Args:
+        a: unit. Shape (N, 3).
+        b: unit. Shape (N, 3).
+    """
     return np.asarray(np.degrees(2 * np.arctan2(np.linalg.norm(a - b, axis=1), np.linalg.norm(a + b, axis=1))))
 
 
 def step_ratio(canal: CanalSurface, eta: float = _RATIO) -> float:
-    """Largest step of a point at ratio η and fixed φ from disk to disk, relative to the centre's."""
+    """Largest step of a point at ratio η and fixed φ from disk to disk, relative to the centre's.
+
+    Args:
+        canal: the surface.
+        eta: ratio η in [0, 1].
+    """
     rim = eta * np.array([[canal.extent(s, phi) for s in range(canal.n_disks)] for phi in _DIRECTIONS])
     cosine, sine = np.cos(_DIRECTIONS)[:, None, None], np.sin(_DIRECTIONS)[:, None, None]
     points = canal.directrix + rim[:, :, None] * (cosine * canal.x_axes + sine * canal.y_axes)
@@ -110,7 +120,12 @@ def deviations(canal: CanalSurface, raw: np.ndarray) -> np.ndarray:
 
 
 def undershoot(canal: CanalSurface, raws: list[np.ndarray]) -> float:
-    """How far the processed demonstrations and the directrix reach below the lowest raw sample, [m]."""
+    """How far the processed demonstrations and the directrix reach below the lowest raw sample, [m].
+
+    Args:
+        canal: the surface.
+        raws: positions as they were recorded, each (., 3), [m].
+    """
     lowest = min(float(canal.demonstrations[..., 2].min()), float(canal.directrix[:, 2].min()))
     return min(float(raw[:, 2].min()) for raw in raws) - lowest
 

@@ -49,6 +49,10 @@ def reading(path: str | os.PathLike[str], what: str) -> Iterator[None]:
 def open_file(path: str | os.PathLike[str], what: str) -> io.BufferedReader:
     """A regular file that is there, is not empty and not too large, open for reading. Pipes and devices would hang.
 
+    Args:
+        path: of the file.
+        what: belongs there, for messages.
+
     Raises:
         InputError: it is not such a file.
         OSError: likewise; see `reading`.

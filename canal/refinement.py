@@ -40,7 +40,14 @@ class SupportPlane:
 
 
 def dips(points: np.ndarray, normals: np.ndarray, radii: np.ndarray, plane: SupportPlane) -> np.ndarray:
-    """How far each disk's lowest rim point lies beyond a plane (positive: it dips), [m]. Shape (N,)."""
+    """How far each disk's lowest rim point lies beyond a plane (positive: it dips), [m]. Shape (N,).
+
+    Args:
+        points: centres, [m]. Shape (N, 3).
+        normals: unit. Shape (N, 3).
+        radii: [m]. Shape (N,).
+        plane: in the same frame.
+    """
     along = normals @ np.asarray(plane.normal)
     return np.asarray(radii * np.sqrt(np.maximum(0.0, 1.0 - along**2)) - plane.height(points))
 

@@ -20,6 +20,11 @@ def crossings(points: np.ndarray, normals: np.ndarray, radii: np.ndarray) -> np.
     """How much of the gap between neighbours their mutual tilt uses up: they cross from 1 on.
 
     r |n_s × n_{s+1}| / |Δc · n| with the larger of the two radii and the smaller of the two gaps. Shape (N-1,).
+
+    Args:
+        points: centres, [m]. Shape (N, 3).
+        normals: unit. Shape (N, 3).
+        radii: [m]. Shape (N,).
     """
     reach = np.maximum(radii[1:], radii[:-1]) * np.linalg.norm(np.cross(normals[1:], normals[:-1]), axis=1)
     delta = np.diff(points, axis=0)
@@ -34,6 +39,10 @@ def continuous_directions(vectors: np.ndarray, hairpins: list[tuple[int, int]] |
     """Vectors with the sign that makes n_s · n_{s-1} > 0: disks retrace their way at a reversal. Shape (N, 3).
 
     In a hairpin (first and last disk) the sign changes once, half-way.
+
+    Args:
+        vectors: Shape (N, 3).
+        hairpins: first and last disk of each, see `reversals`.
     """
     turns = np.sum(vectors[1:] * vectors[:-1], axis=1) < 0
     for first, last in hairpins or []:
@@ -101,6 +110,11 @@ def reversals(points: np.ndarray, tangents: np.ndarray, radii: np.ndarray) -> li
     """Where a path turns back within less than the radius: first and last disk of each such hairpin.
 
     Its disks cannot turn over with it without crossing; they retrace their way instead.
+
+    Args:
+        points: centres, [m]. Shape (N, 3).
+        tangents: unit. Shape (N, 3).
+        radii: [m]. Shape (N,).
     """
     tight = np.flatnonzero(crossings(points, tangents, radii) > 1.0)
     runs = np.split(tight, np.flatnonzero(np.diff(tight) > _ONE_HAIRPIN) + 1) if tight.size else []
@@ -131,6 +145,11 @@ def _within(normals: np.ndarray, centres: np.ndarray, limit: float) -> np.ndarra
 
 
 def tilts(normals: np.ndarray, tangents: np.ndarray) -> np.ndarray:
-    """Angle between each disk's normal and the tangent, up to sign, [rad]. Shape (N,)."""
+    """Angle between each disk's normal and the tangent, up to sign, [rad]. Shape (N,).
+
+    Args:
+        normals: unit. Shape (N, 3).
+        tangents: unit. Shape (N, 3).
+    """
     cross = np.linalg.norm(np.cross(normals, tangents), axis=1)
     return np.arctan2(cross, np.abs(np.sum(normals * tangents, axis=1)))

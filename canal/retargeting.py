@@ -157,7 +157,12 @@ def _least_bending(x: np.ndarray, steps: np.ndarray, reach: np.ndarray) -> tuple
 
 
 def shape_cost(before: CanalSurface, after: CanalSurface) -> ShapeCost:
-    """Compare a canal with what it was bent into."""
+    """Compare a canal with what it was bent into.
+
+    Args:
+        before: as it was.
+        after: as it is now, with any number of disks.
+    """
     u = np.linspace(0.0, 1.0, 401)
     old, new = (_at(u, canal.arc / canal.length, canal.directrix) for canal in (before, after))
     tangent_old, tangent_new = (_at(u, canal.arc / canal.length, canal.tangents) for canal in (before, after))

@@ -13,6 +13,7 @@ from splines.quaternion import CatmullRom, UnitQuaternion
 # 13.4 mm RMS on the recorded, 8.1 at worst on generated demonstrations; so, 12.4 and 7.9. At 4e-4 samples slide along
 # it without hold, and it is worse than at 1.
 TIMING_WEIGHT = 0.04
+"""What a miss along the curve counts, against 1 across it: it is one of timing, not of shape."""
 _FIT_ROUNDS = 3  # the direction of the curve is that of the round before; the fourth moves it by less than 0.1 mm RMS
 
 # Gauss-Legendre on [0, 1], three points: exact to the fifth degree on each interval.
@@ -70,7 +71,12 @@ def _natural(knots: np.ndarray, values: np.ndarray) -> CubicSpline:
 
 
 def arc_length(curve: CubicSpline, n_intervals: int = 2000) -> tuple[np.ndarray, np.ndarray]:
-    """Parameter and arc from the start at the ends of `n_intervals` equal intervals. Shapes (n+1,)."""
+    """Parameter and arc from the start at the ends of `n_intervals` equal intervals. Shapes (n+1,).
+
+    Args:
+        curve: over u in [0, 1].
+        n_intervals: n, each integrated at three points (Gauss).
+    """
     u = np.linspace(0.0, 1.0, n_intervals + 1)
     at = (u[:-1, None] + _GAUSS_AT * np.diff(u)[:, None]).ravel()
     speed = np.linalg.norm(curve(at, 1), axis=1).reshape(-1, 3)
@@ -78,7 +84,13 @@ def arc_length(curve: CubicSpline, n_intervals: int = 2000) -> tuple[np.ndarray,
 
 
 def uniform_in_arc(curve: CubicSpline, n: int, u_arc: tuple[np.ndarray, np.ndarray] | None = None) -> np.ndarray:
-    """Parameters of `n` points uniform in the arc of a curve, ends included. Shape (n,)."""
+    """Parameters of `n` points uniform in the arc of a curve, ends included. Shape (n,).
+
+    Args:
+        curve: over u in [0, 1].
+        n: number of points.
+        u_arc: what `arc_length` says of it; computed where it is not given.
+    """
     u, arc = arc_length(curve) if u_arc is None else u_arc
     grows = np.concatenate([[True], np.diff(arc) > 1e-12 * arc[-1]])
     inverse = PchipInterpolator(arc[grows], u[grows])
@@ -114,7 +126,13 @@ def rotation_curve(knots: np.ndarray, quaternions: np.ndarray, at: np.ndarray) -
 
 
 def slerp(a: np.ndarray, b: np.ndarray, t: np.ndarray) -> np.ndarray:
-    """Row-wise spherical interpolation from `a` (t = 0) to `b` (t = 1) as points of the sphere. Shape (N, k)."""
+    """Row-wise spherical interpolation from `a` (t = 0) to `b` (t = 1) as points of the sphere. Shape (N, k).
+
+    Args:
+        a: unit. Shape (N, k).
+        b: unit. Shape (N, k).
+        t: in [0, 1]. Shape (N,).
+    """
     angle = 2.0 * np.arcsin(np.clip(0.5 * np.linalg.norm(a - b, axis=1), 0.0, 1.0))
     safe = np.where(angle > 1e-8, angle, 1.0)
     first = np.where(angle > 1e-8, np.sin((1 - t) * angle) / np.sin(safe), 1 - t)

@@ -50,6 +50,7 @@ class View:
 
     right: np.ndarray
     up: np.ndarray
+    """Shapes (3,)."""
 
     @property
     def away(self) -> np.ndarray:
@@ -101,6 +102,7 @@ def stick_directions(canal: CanalSurface, view: View) -> np.ndarray:
 
 
 GRID = np.arange(ANGLES) * 2 * np.pi / ANGLES
+"""The directions that are tried, [rad]. Shape (ANGLES,)."""
 
 
 def _carried_frames(canal: CanalSurface) -> tuple[np.ndarray, np.ndarray]:

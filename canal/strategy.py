@@ -8,13 +8,23 @@ from canal.surface import CanalSurface
 
 
 def phase(canal: CanalSurface, disk: float) -> float:
-    """The paper's d in [-1, 1]: -1 pick, 0 home, +1 place (V-E)."""
+    """The paper's d in [-1, 1]: -1 pick, 0 home, +1 place (V-E).
+
+    Args:
+        canal: that is travelled.
+        disk: continuous index.
+    """
     home = canal.home_disk
     return (disk - home) / (home if disk < home else canal.n_disks - 1 - home)
 
 
 def leg_end(canal: CanalSurface, leg: Leg) -> float:
-    """Disk at which a leg ends."""
+    """Disk at which a leg ends.
+
+    Args:
+        canal: that is travelled.
+        leg: of the cycle.
+    """
     if leg.homeward:
         return float(canal.home_disk)
     return 0.0 if leg is Leg.HOME_TO_PICK else float(canal.n_disks - 1)
@@ -25,6 +35,12 @@ def strategy_ratio(canal: CanalSurface, state: NavigationState, disk: float, opt
 
     The decay is slower where it would else take away more than a metre in a metre of travel: on what is left of a leg
     after a reversal or a correction close to home. Then a part of η is left at home, and the next leg keeps it.
+
+    Args:
+        canal: that is travelled.
+        state: has the leg, and where its strategy began.
+        disk: continuous index, ahead of that.
+        options: of the travel.
     """
     leg = Leg(int(state.leg))
     if not leg.homeward:

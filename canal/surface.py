@@ -126,7 +126,12 @@ class CanalSurface:
         return self._lookup.widest_homewards(disk)
 
     def extent(self, disk: float, phi: float) -> float:
-        """Distance from the centre to the rim in the direction φ [rad], [m]: r, or the ellipse's. Planes not seen."""
+        """Distance from the centre to the rim in the direction φ [rad], [m]: r, or the ellipse's. Planes not seen.
+
+        Args:
+            disk: continuous index.
+            phi: φ, [rad].
+        """
         return self._lookup.extent(disk, phi)
 
     def point(self, disk: float, eta: float, phi: float) -> np.ndarray:
@@ -151,5 +156,9 @@ class CanalSurface:
         """(η, φ) of the projection of a point [m] on a disk: η ≥ 0 (above 1 outside), φ in (-π, π] rad.
 
         Both are 0 where the radius is (almost) zero.
+
+        Args:
+            disk: continuous index.
+            p: the point in B, [m]. Shape (3,).
         """
         return self._lookup.disk_coordinates(disk, p)

@@ -16,6 +16,7 @@ from canal.surface import CanalSurface
 from canal.trimming import continuous_signs
 
 FORMAT_VERSION = 1
+"""Of the files that are written; later ones are refused."""
 SHAPES = {  # of the arrays every file has; N disks, n demonstrations
     "directrix": ("N", 3),
     "radii": ("N",),
@@ -30,6 +31,7 @@ SHAPES = {  # of the arrays every file has; N disks, n demonstrations
     "demonstration_orientations": ("n", "N", 4),
 }
 OPTIONAL_SHAPES = {"ellipses": ("N", 3), "x_global": (3,), "support_planes": ("k", 4)}
+"""Of the arrays that a file may have; k support planes."""
 SCALARS, TEXTS = ("moving_time_s", "format_version"), ("warnings", "options")
 KEYS = (*SHAPES, *OPTIONAL_SHAPES, *SCALARS, *TEXTS)
 """Of a canal file."""
@@ -42,6 +44,7 @@ _AGAIN = "make the file again with learn -o"
 
 
 Path = str | os.PathLike[str]
+"""Whatever names a file."""
 
 
 def save_canal(path: Path, canal: CanalSurface) -> None:

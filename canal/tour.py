@@ -12,6 +12,7 @@ from canal.navigation import NavigationOptions, initial_state, step
 from canal.surface import CanalSurface
 
 RATE_HZ = 100.0
+"""[1/s] Steps of a tour."""
 
 
 @dataclass(frozen=True)
@@ -57,6 +58,7 @@ DEFAULT_PUSHES = (
     Push(0.60, 0.8, (0.8, -0.5)),
     Push(0.76, 0.6, (-0.3, -0.9)),
 )
+"""Two corrections on each half of the way: one outwards, which is kept, and one homewards, which fades."""
 
 
 def tour(
@@ -97,6 +99,14 @@ def tour(
 
 
 def segments(position: np.ndarray, correcting: np.ndarray) -> list[np.ndarray]:
-    """The parts of a path (T, 3) in which `correcting` (T,) holds, each from the point where it began."""
+    """The parts of a path (T, 3) in which `correcting` (T,) holds, each from the point where it began.
+
+    Args:
+        position: Shape (T, 3).
+        correcting: whether a thumb corrected. Shape (T,).
+
+    Returns:
+        Parts of the path, each (k, 3).
+    """
     edges = np.flatnonzero(np.diff(np.concatenate([[0], np.asarray(correcting, dtype=int), [0]])))
     return [position[max(0, begin - 1) : end] for begin, end in edges.reshape(-1, 2)]

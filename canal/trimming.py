@@ -15,9 +15,8 @@ SMOOTHING_SAMPLES = 4.0  # [samples at 20 Hz] σ of the smoothing in time
 ROTATION_LENGTH_M = 0.07  # [m / rad] λ: how much motion a turn on the spot is
 SPEED_SHARE = 0.25  # v₀ = 0.25 Σv²/Σv: half of the weight is lost at a quarter of the usual speed
 LARGEST_JUMP_M, LARGEST_JUMP = 0.15, 30.0  # [m], [usual steps]; recordings have steps of up to 6 usual ones
-SLOWEST_M_S = (
-    0.002  # [m/s] on the mean while it moves; hands move at 20 to 500 mm/s, a thousandth of it if time is in ms
-)
+SLOWEST_M_S = 0.002
+"""[m/s] on the mean while it moves: hands move at 20 to 500 mm/s, at a thousandth of it if time is in ms."""
 LONGEST_GAP = 10.0  # [usual steps in time] half a second at 20 Hz; a longer one is a pause that was not written
 SMALLEST_MOTION_M = 0.005  # [m] a tremor reaches 5 mm; what moves less has no direction
 

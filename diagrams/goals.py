@@ -1,4 +1,4 @@
-"""What "placed" means (SPEC section 7): one goal a thing, judged alike by the monitor and by an operator's eye."""
+"""What "placed" means (docs/method.md, 7): one goal a thing, judged alike by the monitor and by an operator's eye."""
 
 from __future__ import annotations
 
@@ -77,7 +77,7 @@ class MarkGoal:
     position: np.ndarray
     """Where the thing's origin is when it stands on the mark, in W [m]. Shape (3,)."""
     tolerance: float = 0.03
-    """Horizontal distance that is still on the mark [m] (SPEC section 7, task 1)."""
+    """Horizontal distance that is still on the mark [m] (docs/method.md, 7)."""
     height_tolerance: float = 0.03
     """Vertical distance [m]: it stands on the table, neither on the floor nor on something else."""
     upright: bool = False

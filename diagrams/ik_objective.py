@@ -1,6 +1,6 @@
 """The objective of one tick, as a sum of squares with its exact gradient and its Gauss-Newton matrix.
 
-    f(q) = w_p |p(q) - p*|² + w_o θ(q)² + Σ ((q - q_prev) / range)²          (SPEC 5; the paper's eq. for J(s))
+    f(q) = w_p |p(q) - p*|² + w_o θ(q)² + Σ ((q - q_prev) / range)²          (the paper's J(s), V-C)
 
 With φ the logarithm of the rotation from the wanted to the actual orientation, θ = |φ|, the residual
 r = (√w_o φ, √w_p (p - p*)) has the slope K = diag(√w_o J_l⁻¹(φ), √w_p I) J, J the tool's Jacobian (rows ω then v), so

@@ -8,7 +8,7 @@ from pydantic import Field
 
 from canal.options import NotNegative, Positive, options
 
-# SPEC 5 / the paper's implementation: w_p = 100.
+# w_p of the paper's Table I.
 POSITION_WEIGHT = 100.0
 
 

@@ -15,11 +15,11 @@ STIFFNESS = (6000.0, 6000.0, 5000.0, 2500.0, 1500.0, 900.0)
 DAMPING = (150.0, 150.0, 120.0, 60.0, 35.0, 20.0)
 """[N m s/rad]"""
 OPEN_ANGLE = 0.5236
-"""Angle of the open gripper [rad] (SPEC section 6)."""
+"""Angle of the open gripper [rad] (docs/method.md, 6)."""
 CLOSE_TARGET = -0.1
 """Where the closed gripper aims [rad]: past closed, so that the drive's effort limit makes the grip, not its spring."""
 GRIPPER_SPEED = 1.047
-"""[rad/s] (SPEC section 6)."""
+"""[rad/s] (docs/method.md, 6)."""
 PERIOD = in_step(1 / 60)
 """[s] Of the gripper's ramp."""
 CLEAR_OF_STOPS = 1e-4

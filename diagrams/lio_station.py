@@ -25,7 +25,7 @@ from diagrams.soft_contact import prepare_for_cloth
 from diagrams.world import Contact, World
 
 START_POSTURE = np.array([-1.62113, -1.19688, 1.27447, 0.02532, 1.48154, -0.05674])
-"""[rad] (SPEC section 6)."""
+"""[rad] (docs/method.md, 6)."""
 
 GRIP_STIFFNESS, GRIP_DAMPING = 200.0, 4.0
 """Of the gripper's drive [N m/rad], [N m s/rad]."""

@@ -1,4 +1,4 @@
-"""The monitor: what is in its place, since when, and the end of a run with a reason (SPEC section 7)."""
+"""The monitor: what is in its place, since when, and the end of a run with a reason (docs/method.md, 7)."""
 
 import numpy as np
 from pydrake.systems.framework import Context, DiagramBuilder, DiscreteValues, EventStatus, LeafSystem

@@ -16,7 +16,7 @@ from canal.navigation import (
 from canal.surface import CanalSurface
 
 FINGERS_MOVING = 0.05
-"""[rad/s] Fingers faster than this are moving: 5 % of their full speed (SPEC section 6)."""
+"""[rad/s] Fingers faster than this are moving: 5 % of their full speed (docs/method.md, 6)."""
 
 
 class CanalNavigator(LeafSystem):

@@ -58,7 +58,7 @@ class RunLog:
 
 
 def named_signals(raw: Mapping[str, np.ndarray]) -> dict[str, np.ndarray]:
-    """The arrays of a log file (DESIGN, "Files that others read") from the raw signals of `RunLog`.
+    """The arrays of a log file from the raw signals of `RunLog`.
 
     A row has what was measured at its `time` (`X_BT`, `q`, `v`, `gripper`, `item_poses`, `contact_forces`), and what
     was wanted and commanded in the control period that ends then: `q_command` is where the arm was to be at `time`,

@@ -13,7 +13,7 @@ from canal.errors import InputError
 from canal.surface import CanalSurface
 from diagrams.ik_solver import IkSolver
 
-# A disk counts as followed within these; SPEC of the reach report: 1 mm, and the paper's one standard deviation.
+# A disk counts as followed within these: 1 mm, and one standard deviation of the demonstrations.
 POSITION_TOLERANCE = 1e-3
 LEAST_ORIENTATION_TOLERANCE = math.radians(0.1)
 _RANDOM_STARTS = 24  # per sampled disk; the Lio has at most 16 branches

@@ -1,4 +1,4 @@
-"""Options of a run, the same for both tasks (DESIGN, "What a person types")."""
+"""Options of a run, the same for both tasks."""
 
 from pathlib import Path
 from typing import Annotated, Literal

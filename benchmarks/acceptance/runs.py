@@ -15,7 +15,7 @@ from diagrams.shared_autonomy import SharedAutonomy
 RIGID_MIN, RELOCATION_MIN, SOFT_MIN = 0.30, 0.25, 0.60
 """Minutes of one core that a run takes, watched, on the machine of November 2026."""
 JOINT_SPEED = math.radians(95.0)
-"""[rad/s] of every joint (SPEC section 6)."""
+"""[rad/s] of every joint (docs/method.md, 6)."""
 
 
 class _JointSpeeds:

@@ -1,4 +1,4 @@
-"""The laws of travelling along a canal (SPEC section 4)."""
+"""The laws of travelling along a canal (docs/method.md, 4)."""
 
 import math
 from dataclasses import replace

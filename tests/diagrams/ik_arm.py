@@ -10,7 +10,7 @@ from pydrake.multibody.plant import MultibodyPlant
 from diagrams.ik_solver import IkSolver
 
 TCP = "tcp"
-# SPEC 6, start posture.
+# Where the arm stands at the start (docs/method.md, 6).
 Q_START = np.array([-1.62113, -1.19688, 1.27447, 0.02532, 1.48154, -0.05674])
 
 

@@ -17,7 +17,7 @@ PORTS = {
     "contact_forces": 4, "penetration": 1,
 }  # fmt: skip
 SPEED = np.deg2rad(95.0)
-"""[rad/s] Of every joint of the arm (SPEC section 6)."""
+"""[rad/s] Of every joint of the arm (docs/method.md, 6)."""
 RATE = 60
 """[Hz] Of commands, and of the rig's scenario."""
 

@@ -1,4 +1,4 @@
-"""The Lio's model says what the published figures say (SPEC section 6), and its meshes are sound."""
+"""The Lio's model says what the published figures say (docs/method.md, 6), and its meshes are sound."""
 
 import numpy as np
 import pytest
