@@ -17,6 +17,7 @@ log = get_plugin_logger("gallery")
 
 SECTIONS = {
     "The figures of the paper": (
+        "teaser",
         "canals",
         "frames",
         "disk_to_disk",
@@ -30,6 +31,7 @@ SECTIONS = {
         "navigator_alone",
         "moving_target",
         "own_constraints",
+        "retargeted_run",
         "reach",
         "block_diagram",
     ),
