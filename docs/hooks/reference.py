@@ -41,6 +41,16 @@ def on_files(files: Files, config: MkDocsConfig) -> Files:
     return files
 
 
+def on_page_markdown(markdown: str, **_: object) -> str:
+    """Put the table of a summary's figures where a page asks for it."""
+    if "<!-- measures -->" not in markdown:
+        return markdown
+    from geosacs_drake.measures import MEASURES
+
+    rows = [f"| `{m.key}` | {m.unit} | {_cell(m.definition)} |" for m in MEASURES]
+    return markdown.replace("<!-- measures -->", "\n".join(["| key | unit | what it is |\n|---|---|---|", *rows]))
+
+
 def _packages(folder: Path) -> list[Path]:
     """A package and those in it."""
     inner = sorted(path.parent for path in folder.glob("*/__init__.py"))
