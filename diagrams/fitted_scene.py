@@ -19,12 +19,13 @@ from canal.surface import CanalSurface
 from diagrams.fitted_table import FittedTable, fit_tables
 from diagrams.ik_solver import IkSolver
 from diagrams.joint_pace import unhurried
-from diagrams.layout import draw_layout
+from diagrams.layout import draw_layout, hand_above
 from diagrams.lio_station import START_POSTURE
 from diagrams.open_gripper import gripper_depth, lean, opens_towards, tool_axes
 from diagrams.reach import ReachReport, reach_report
 from diagrams.scenario import Scenario
 from diagrams.start_posture import find_start_posture
+from diagrams.way_down import MOST_LEAN, room_at
 from diagrams.world import Item, Region, Robot, Room, Thing
 
 GRIP_HEIGHT = 0.040
@@ -34,8 +35,6 @@ TIP_ROOM = 0.010
 """Least room of the fingertips above the table [m]: tracking errors are up to 5.5 mm, and a table gives way."""
 MOST_GRIP_HEIGHT = 0.055
 """[m] Above this the pads hold the cube, 60 mm tall, by less than a third."""
-MOST_LEAN = math.radians(50.0)
-"""How far off straight down the gripper may point at an end: beyond it the hand comes down on what lies next to it."""
 BELOW_ENDS = 0.002
 """The support plane lies this far below the lowest disk [m], whose centre has to be above it."""
 MOST_RISE = 0.012
@@ -50,10 +49,9 @@ YAW_RANGE_DEG = 15.0
 """Flat sides and handles may be turned by this much from where they suit the fingers."""
 LEAST_HEIGHT = 0.03
 """Of a table: as thick as its board [m]."""
-TALL = 0.035
-"""Of what stands beside the thing that is gripped, above the TCP [m]: a gripper that leans comes over it."""
-FINGERS_ACROSS = 0.060
-"""[m] Half a finger's width, the radius of another thing, and what a hand errs by."""
+MOST_SIDEWAYS = 0.035
+"""[m] How far the gripper may be off a thing, the way its fingers open, when it is 0.05 above where it closes: its tips
+pass the rim of the cup, open by 0.070 to each side, where the cup measures 0.036."""
 BEYOND = (0.0, 0.008, 0.015)
 """[m] How far past what the gripper's centre reaches things may lie where a disk is small: fingers open 0.055 to each
 side, and marks are met within 0.03."""
@@ -115,7 +113,7 @@ def fit_scene(canal: CanalSurface, template: Scenario, solver: IkSolver) -> Fitt
     lines = [f"scene fitted to the canal: tables of {tops['pick']:.3f} m at pick and {tops['place']:.3f} m at place"]
     regions = {}
     for row, (name, table) in enumerate(tables.items()):
-        region, share = _region(canal, report, row, table)
+        region, share = _region(canal, report, row, name, table)
         regions[name] = region
         radius = 1e3 * float(canal.radii[report.disks[row]])
         if share < 0.995:
@@ -172,16 +170,19 @@ def _set_down_drop(canal: CanalSurface) -> float:
     return SET_DOWN + WIDEST_THING * math.sin(leans) - GRIP_HEIGHT * (1.0 - math.cos(leans))
 
 
-def _region(canal: CanalSurface, report: ReachReport, row: int, table: FittedTable) -> tuple[Region, float]:
+def _region(canal: CanalSurface, report: ReachReport, row: int, name: str, table: FittedTable) -> tuple[Region, float]:
     """Where things may lie at an end, and which part of the disk's area that is."""
     disk = int(report.disks[row])
     center = canal.directrix[disk]
     usable = report.reached[row] & table.free
+    room = room_at(canal, disk)
+    most = max(MOST_SIDEWAYS, _sideways(room, np.zeros(2))) if name == "pick" else math.inf
     angles, reach, whole = np.empty(SPOKES), np.zeros(SPOKES), np.empty(SPOKES)
     for spoke, phi in enumerate(report.phis):
         offsets = np.array([canal.point(disk, eta, phi) - center for eta in report.etas])
         level = np.hypot(offsets[:, 0], offsets[:, 1])
-        good = usable[:, spoke] & (np.abs(offsets[:, 2]) <= MOST_RISE)
+        sideways = np.array([_sideways(room, offset[:2]) for offset in offsets])
+        good = usable[:, spoke] & (np.abs(offsets[:, 2]) <= MOST_RISE) & (sideways <= most)
         first_bad = int(np.argmin(good)) if not good.all() else RINGS
         angles[spoke] = math.atan2(offsets[-1, 1], offsets[-1, 0]) % (2 * math.pi)
         reach[spoke] = level[first_bad - 1] if first_bad else 0.0
@@ -192,9 +193,14 @@ def _region(canal: CanalSurface, report: ReachReport, row: int, table: FittedTab
     even = RIM_SHARE * np.minimum(even, table.room(center[:2], around) / RIM_SHARE)
     rim = np.interp(around, angles[order], whole[order], period=2 * math.pi)
     share = float(np.sum((even / RIM_SHARE) ** 2) / max(float(np.sum(rim**2)), 1e-12))
-    q = canal.orientations[disk]
-    room = Room(yaw_deg=math.degrees(opens_towards(q)), across=FINGERS_ACROSS + TALL * math.tan(lean(q)))
     return Region(center=[*center[:2].tolist(), table.top], reach=even.tolist(), room=room), min(share, 1.0)
+
+
+def _sideways(room: Room, spot: np.ndarray) -> float:
+    """How far off a spot (2,) of the disk the gripper is, the way its fingers open, half-way down on it [m]."""
+    off = hand_above(room, spot)[len(room.way) // 2] - spot
+    yaw = math.radians(room.yaw_deg)
+    return abs(float(off @ [math.cos(yaw), math.sin(yaw)]))
 
 
 def _item(item: Item, canal: CanalSurface, regions: dict[str, Region]) -> Item:

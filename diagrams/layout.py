@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -12,7 +13,9 @@ from canal.errors import InputError
 from diagrams.goals import DrumGoal, Goal, MarkGoal
 from diagrams.world import Region, Robot, Room, Thing, World
 
-TRIES, ROUNDS = 200, 100
+TRIES, ROUNDS, DEALS = 200, 100, 30
+CARRIED = 0.080
+"""[m] Between the middles of a thing in the hand and of one that stands: the widest measure 0.037, and a hand errs."""
 LAYOUT_STREAM = 5
 """Sets this random stream apart from others with the same seed."""
 
@@ -46,9 +49,20 @@ def draw_layout(world: World, seed: int) -> tuple[list[Spot], list[Spot | None]]
         Starts and marks, in the items' order; None for an item without a goal.
 
     Raises:
-        InputError: the regions are too small for the spacing.
+        InputError: the regions are too small for the spacing, or for the hand's way down.
     """
     rng = np.random.default_rng((seed, LAYOUT_STREAM))
+    for _ in range(DEALS):
+        starts, marks = _draw_ends(rng, world)
+        if (dealt := _in_turn(rng, world, starts, marks)) is not None:
+            return starts, dealt
+    raise InputError(
+        "items: wherever they lie, the hand on its way to one meets another; give them more room, or fewer of them"
+    )
+
+
+def _draw_ends(rng: np.random.Generator, world: World) -> tuple[list[Spot], list[Spot | None]]:
+    """Starts and marks, each no nearer to the others than they may be."""
     starts = _draw_all(
         rng,
         world,
@@ -93,7 +107,7 @@ def _draw(rng: np.random.Generator, world: World, region: Region, others: list[t
         yaw = np.deg2rad(on.yaw_deg + rng.uniform(region.yaw_deg[0], region.yaw_deg[1]))
         position = X_WT.multiply(np.asarray(region.center, dtype=float) + [*shift, 0.0])
         if all(
-            np.linalg.norm(position - other.position) >= world.item_spacing
+            math.dist(position, other.position) >= world.item_spacing
             and _clear(position - other.position, region.room)
             and _clear(position - other.position, theirs.room)
             for other, theirs in others
@@ -107,22 +121,71 @@ def _shift(rng: np.random.Generator, region: Region) -> np.ndarray:
     if not region.reach:
         return rng.uniform(-1, 1, 2) * region.half_widths
     while True:
-        distance, angle = max(region.reach) * np.sqrt(rng.uniform()), rng.uniform(0, 2 * np.pi)
+        distance, angle = max(region.reach) * math.sqrt(rng.uniform()), rng.uniform(0, 2 * math.pi)
         if distance <= reach_at(region.reach, angle):
             return distance * np.array([np.cos(angle), np.sin(angle)])
 
 
-def reach_at(reach: Sequence[float], angle: np.ndarray | float) -> np.ndarray:
+def reach_at(reach: Sequence[float], angle: float) -> float:
     """How far a region reaches at an angle [rad] about its middle, [m]: `reach` is given at equal angles."""
-    return np.asarray(np.interp(angle, np.arange(len(reach)) * (2 * np.pi / len(reach)), reach, period=2 * np.pi))
+    place = angle * len(reach) / (2 * math.pi)
+    k, share = math.floor(place), place % 1.0
+    return (1.0 - share) * reach[k % len(reach)] + share * reach[(k + 1) % len(reach)]
 
 
 def _clear(apart: np.ndarray, room: Room | None) -> bool:
     """Whether what lies `apart` [m] leaves a thing the room that the fingers need."""
     if room is None:
         return True
-    c, s = np.cos(np.deg2rad(room.yaw_deg)), np.sin(np.deg2rad(room.yaw_deg))
-    return bool(abs(c * apart[0] + s * apart[1]) >= room.along or abs(c * apart[1] - s * apart[0]) >= room.across)
+    x, y = apart[:2].tolist()
+    c, s = math.cos(math.radians(room.yaw_deg)), math.sin(math.radians(room.yaw_deg))
+    return abs(c * x + s * y) >= room.along or abs(c * y - s * x) >= room.across
+
+
+def hand_above(room: Room, spot: np.ndarray) -> np.ndarray:
+    """What the hand is above on its way down to a spot (2,), both from the region's middle [m]. Shape (heights, 2)."""
+    x, y = spot
+    return np.array([[dx + a * x - b * y, dy + b * x + a * y] for dx, dy, a, b in room.way]).reshape(-1, 2)
+
+
+def in_the_way(room: Room | None, spot: np.ndarray, other: np.ndarray) -> bool:
+    """Whether the hand, on its way to a spot, meets what stands at another: (2,) from the region's middle [m]."""
+    if room is None:
+        return False
+    aside = [other - hand for hand in hand_above(room, spot)]
+    return any(math.hypot(*apart) < CARRIED or not _clear(apart, room) for apart in aside)
+
+
+def _in_turn(
+    rng: np.random.Generator, world: World, starts: list[Spot], marks: list[Spot | None]
+) -> list[Spot | None] | None:
+    """The marks, dealt so that things can be carried one after the other; None: the hand always meets one.
+
+    Where the hand comes down aslant, what stands there has to be taken first, or placed last.
+    """
+    goals = [item.goal for item in world.items if item.goal is not None]
+    known = [mark for mark in marks if mark is not None]
+    alike = len(goals) == len(known) == len(marks) and all(goal == goals[0] for goal in goals)
+    if not alike or goals[0].room is None or not goals[0].room.way:
+        return marks
+    taken, cleared = _turns(rng, starts, [item.start for item in world.items]), _turns(rng, known, goals)
+    if taken is None or cleared is None:
+        return None
+    dealt = dict(zip(taken, reversed(cleared), strict=True))  # what could be taken first is placed last
+    return [marks[dealt[i]] for i in range(len(marks))]
+
+
+def _turns(rng: np.random.Generator, spots: list[Spot], regions: list[Region]) -> list[int] | None:
+    """An order in which things can be taken away, each past those that are still there; None: there is none."""
+    left, turns = list(range(len(spots))), []
+    seen = [spot.position[:2] - region.center[:2] for spot, region in zip(spots, regions, strict=True)]
+    while left:
+        free = [i for i in left if not any(in_the_way(regions[i].room, seen[i], seen[j]) for j in left if j != i)]
+        if not free:
+            return None
+        turns.append(int(rng.choice(free)))
+        left.remove(turns[-1])
+    return turns
 
 
 def make_goals(world: World, marks: list[Spot | None], rest_heights: list[float]) -> list[Goal]:

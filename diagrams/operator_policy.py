@@ -15,6 +15,7 @@ from canal.surface import CanalSurface
 from diagrams.goals import Goal
 from diagrams.operator_options import OperatorOptions
 from diagrams.operator_state import Mode, OperatorState, Sight
+from diagrams.operator_ways import Ways
 
 
 class OperatorPolicy:
@@ -37,6 +38,7 @@ class OperatorPolicy:
         self.stick_speed = stick_speed
         self.p_BG = p_BG
         self.seed = seed
+        self.ways = Ways(canal, [goal.precise for goal in goals])
 
     def initial(self) -> np.ndarray:
         """State vector before anything has happened."""
@@ -122,22 +124,24 @@ class OperatorPolicy:
             state.mode = Mode.LIFT
 
     def _choose(self, state: OperatorState, given_up: np.ndarray, tries: np.ndarray, sight: Sight) -> None:
-        """The topmost thing that is still to do and lies where the canal's pick disk reaches."""
+        """The topmost thing to do that lies where the canal's pick disk reaches; first what is in the way of others."""
         canal = self.canal
-        best, state.thing, state.aimed = -math.inf, -1.0, 0.0
+        state.thing, state.aimed = -1.0, 0.0
         for i, position in enumerate(sight.positions):
             # Looked at anew each time: what lay well may have been knocked, or have rolled out.
-            if given_up[i] or sight.placed[i]:
-                continue
             offset = position - canal.center(0.0)
-            across = math.hypot(offset[0], offset[1])
-            if tries[i] >= self.options.tries or across > 2 * canal.radius(0.0) + 0.1 or offset[2] < -0.15:
+            far = math.hypot(offset[0], offset[1]) > 2 * canal.radius(0.0) + 0.1 or offset[2] < -0.15
+            if not sight.placed[i] and (tries[i] >= self.options.tries or far):
                 given_up[i] = 1.0
-                continue
-            # One that was tried in vain comes last: something else may lie on it.
-            score = position[2] - 0.1 * across - tries[i]
-            if score > best:
-                best, state.thing = score, float(i)
+        todo = [i for i in range(len(self.goals)) if not (given_up[i] or sight.placed[i])]
+
+        def score(i: int) -> float:
+            # One that was tried in vain comes late: something else may lie on it.
+            across = math.hypot(*(sight.positions[i] - canal.center(0.0))[:2])
+            waits_for = self.ways.waits_for(i, todo, sight.positions, self.p_BG)
+            return float(sight.positions[i][2]) - 0.1 * across - float(tries[i]) - waits_for
+
+        state.thing = float(max(todo, key=score, default=-1))
 
     def _lift(self, state: OperatorState, given_up: np.ndarray, tries: np.ndarray, sight: Sight, time: float) -> None:
         risen = sight.p_BT[2] - state.grip_height > self.options.lift_m

@@ -7,7 +7,7 @@ from typing import Annotated, Literal
 from pydantic import AfterValidator, Field
 
 from canal.errors import InputError
-from canal.options import Angle, Position, options, short
+from canal.options import Angle, Coordinate, Position, options, short
 from diagrams.model_files import check_model
 from models import MODELS
 
@@ -63,6 +63,9 @@ class Room:
     """Half its extent in that direction [m]: open fingers reach 0.094, another thing 0.042, and a hand errs by 8 mm."""
     across: HalfWidth = 0.065
     """Half its extent across it [m]: fingers are 0.03 wide. More, the more the gripper leans."""
+    way: list[Annotated[list[Coordinate], Field(min_length=4, max_length=4)]] = field(default_factory=list)
+    """How the hand comes down, as long as it is lower than things are tall: (dx, dy, a, b) for some heights. On its way
+    to (x, y), seen from the region's middle, it is above (dx + a x - b y, dy + b x + a y) [m]. Empty: straight down."""
 
 
 @options()

@@ -109,9 +109,12 @@ class Count:
     figure: str
     share: float = 1.0
     """Of the jobs that must have it."""
+    among: str = ""
+    """Only jobs with this figure count; empty: all. A job that failed, and has no figures, always counts."""
 
     def judge(self, results: Sequence[Figures]) -> Verdict:
         """Its row, given what each job measured."""
+        results = [figures for figures in results if not self.among or figures.get(self.among, 1.0)]
         n, count = len(results), sum(bool(figures.get(self.figure, 0.0)) for figures in results)
         wanted = math.ceil(self.share * n - 1e-9)
         return Verdict(self.name, f"{wanted} of {n}", f"{count} of {n}", "ok" if n and count >= wanted else "SHORT")

@@ -47,6 +47,9 @@ def test_a_figure_that_is_missing_falls_short():
     assert Worst("a", "x", at_most(5)).judge([{}]).verdict == "SHORT"
     assert Count("a", "x").judge([{"x": 1.0}, {}])[1:] == ("2 of 2", "1 of 2", "SHORT")
     assert Count("a", "x", 0.9).judge([{"x": 1.0}] * 18 + [{}, {"x": 0.0}])[1:] == ("18 of 20", "18 of 20", "ok")
+    within = Count("a", "x", among="y")
+    assert within.judge([{"x": 1.0, "y": 1.0}, {"x": 0.0, "y": 0.0}])[1:] == ("1 of 1", "1 of 1", "ok")
+    assert within.judge([{"x": 1.0, "y": 1.0}, {}])[1:] == ("2 of 2", "1 of 2", "SHORT"), "what failed counts"
 
 
 def test_jobs_run_in_processes_of_their_own_and_one_that_fails_harms_no_other(tmp_path):
