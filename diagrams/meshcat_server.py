@@ -178,12 +178,17 @@ def _is_watched(meshcat: Meshcat) -> bool:
     return watched
 
 
-def leave(status: int, meshcat: Meshcat | None = None) -> NoReturn:
+def leave(status: int, meshcat: Meshcat | None = None, *, at_once: bool = False) -> NoReturn:
     """End the process with `status`; at once even while a browser is connected. Write files before.
 
     Meshcat's destructor waits for its browsers (10 s); with one connected the process ends without destructors.
+
+    Args:
+        status: of the process.
+        meshcat: that browsers may be connected to.
+        at_once: end without destructors in any case: they take a second or two, while somebody looks on.
     """
-    if meshcat is not None and _is_watched(meshcat):
+    if at_once or (meshcat is not None and _is_watched(meshcat)):
         sys.stdout.flush()
         sys.stderr.flush()
         os._exit(status)

@@ -61,7 +61,7 @@ class Scenario(World):
     operator: OperatorOptions = field(default_factory=OperatorOptions)
     mapping: Literal["axes", "seat", "view"] | None = None
     """What the stick's right and up are: the correction axes (the paper), or right and up as seen from the seat or by
-    the camera. None: from the seat in the console, else the axes."""
+    the camera. None: by the camera in the console, else the axes."""
     seat: Literal["front", "left", "right", "behind"] = "front"
     """Where the person sits, seen from the robot."""
     monitor: MonitorOptions = field(default_factory=MonitorOptions)

@@ -51,7 +51,7 @@ class RunOptions:
     Meshcat's page alone."""
     mapping: Literal["axes", "seat", "view"] | None = None
     """What the stick's right and up are: the canal's correction axes, as in the paper, or right and up as seen from the
-    seat, or by the camera. Default: as the scenario says; from the seat in the console."""
+    seat, or by the camera. Default: as the scenario says; by the camera in the console."""
     seat: Literal["front", "left", "right", "behind"] | None = None
     """Where the person sits, seen from the robot. Default: as the scenario says; front."""
     host: str = "localhost"

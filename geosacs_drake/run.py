@@ -19,6 +19,7 @@ from diagrams.meshcat_recording import Recording
 from diagrams.meshcat_server import leave, start_meshcat
 from diagrams.shared_autonomy import build_shared_autonomy
 from geosacs_drake.command_line import ExitStatus, end, parse_options, status_of
+from geosacs_drake.console.again import run_again
 from geosacs_drake.console.console import Console
 from geosacs_drake.console.mapping_choice import chosen_view
 from geosacs_drake.interrupts import Interrupts, Phase
@@ -68,8 +69,12 @@ def run(options: RunOptions, task: str, prog: str) -> ExitStatus:
         # From here on a browser may be connected, for which Meshcat's destructor would wait.
         status = status_of(lambda: _run(options, found, page, console, interrupts, prog), prog)
         if console is not None:
+            if not interrupts.asked and console.offers_again:
+                interrupts.begin(Phase.RUNNING)
+                if console.wait_for_again(lambda: interrupts.asked):
+                    run_again(console.server.port, console.server.access.token)
             console.close()
-        leave(status, page)
+        leave(status, page, at_once=console is not None)
 
 
 def _run(
@@ -86,7 +91,7 @@ def _run(
         recorded = start_meshcat(X_WB=base_pose(scenario.robot), hidden=True)
         recording = Recording(recorded, title=scenario.description or scenario.task)
     operator = operator_of(options)
-    mapping = options.mapping or scenario.mapping or ("axes" if console is None else "seat")
+    mapping = options.mapping or scenario.mapping or ("axes" if console is None else "view")
     seat = options.seat or scenario.seat
     view = chosen_view(mapping, seat)
     choice = None if console is None else console.choose_mapping(found.canal, mapping, seat)
@@ -109,6 +114,10 @@ def _run(
     report = None if console is None else console.report(system, found.canal, scenario)
     if console is not None:
         print(f"steer, or watch, at {console.address}", flush=True)
+        if outside := console.server.network_address:
+            print(
+                f"whoever knows this address steers the robot, from any machine of this network: {outside}", flush=True
+            )
         console.open_browser()
     elif page is not None:
         steer = f" and steer at {page.web_url()}\n{CONTROLS}" if operator == "person" else f" at {page.web_url()}"

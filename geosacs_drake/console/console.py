@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import sys
+import threading
 import time
 import webbrowser
 from collections.abc import Callable
@@ -17,6 +18,7 @@ from canal.surface import CanalSurface
 from diagrams.announcements import Announcement
 from diagrams.scenario import Scenario
 from diagrams.shared_autonomy import SharedAutonomy
+from geosacs_drake.console.again import earlier_place
 from geosacs_drake.console.control import Control
 from geosacs_drake.console.link import Answers
 from geosacs_drake.console.mapping_choice import MappingChoice, chosen_view
@@ -25,6 +27,8 @@ from geosacs_drake.console.status import StatusReporter
 
 WAIT_FOR_PAGE_S = 15.0
 """[s] With no page after so long the simulated operator begins."""
+ALONE_S = 5.0
+"""[s] After the end, with no page for so long nobody will say that it is to run again."""
 LOOK_S = 0.05
 """[s] Between two looks whether somebody has begun."""
 
@@ -45,6 +49,9 @@ class Console:
             InputError: the port is taken.
         """
         address = meshcat.web_url().removeprefix("http://").partition(":")
+        earlier = earlier_place()
+        self._again = earlier is not None
+        self._word = threading.Event()
         self.control = Control(person_asked=person)
         self.answers = Answers()
         self.server = ConsoleServer(
@@ -52,10 +59,13 @@ class Console:
             self.answers,
             meshcat_address=(address[0], int(address[2])),
             host=host,
-            port=port,
+            port=port if earlier is None else earlier[0],
+            token=None if earlier is None else earlier[1],
         )
+        self.answers.on_word = self._hear
         self._person = person
         self._standing = ""
+        self._said = ""
         self._mapping, self._seat = "axes", "front"
         self.server.start()
 
@@ -66,6 +76,8 @@ class Console:
 
     def open_browser(self) -> None:
         """Open the page where there is a display and a terminal to close it from."""
+        if self._again:
+            return
         display = os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY") or sys.platform in ("darwin", "win32")
         if display and sys.stdout.isatty():
             webbrowser.open(self.address)
@@ -124,7 +136,29 @@ class Console:
 
     def end(self, summary: dict[str, Any]) -> None:
         """Show what was achieved."""
-        self.server.show_end(summary)
+        self.server.show_end(summary | {"again": self.offers_again})
+
+    @property
+    def offers_again(self) -> bool:
+        """Whether somebody may want to run again: a page is open, and a terminal to end it from."""
+        return sys.stdout.isatty() and self.server.pages > 0
+
+    def wait_for_again(self, asked_to_end: Callable[[], bool]) -> bool:
+        """Wait while a page is open for somebody to say what comes next; whether it is to run again."""
+        print("run again in the page, or end it with Ctrl-C", flush=True)
+        alone_since = time.monotonic()
+        while not self._word.wait(LOOK_S) and not asked_to_end():
+            if self.server.pages:
+                alone_since = time.monotonic()
+            elif time.monotonic() - alone_since > ALONE_S:
+                return False
+        return self._said == "again"
+
+    def _hear(self, page: str, word: str) -> str:
+        if word in ("again", "leave"):
+            self._said = word
+            self._word.set()
+        return ""
 
     def close(self) -> None:
         """Let go of the pages and the port."""

@@ -25,8 +25,8 @@ if TYPE_CHECKING:
     from geosacs_drake.console.server import ConsoleServer
 
 PAGE = Path(__file__).parent / "page"
-MOST_AHEAD = 2
-"""Pictures that may be on their way to a page that has not said that it has drawn them."""
+QUICK_S = 0.1
+"""[s] A page that draws as quickly may have two pictures on their way to it, another one only one."""
 NAMES = itertools.count(1)
 
 
@@ -163,6 +163,7 @@ class MeshcatSocket(_Socket):
         self.set_nodelay(True)
         self.server.open.add(self)
         self.newest, self.sent, self.drawn = Newest(), 0, 0
+        self.sent_s, self.took_s = 0.0, 0.0
         self._feed = asyncio.ensure_future(self._follow())
 
     async def _follow(self) -> None:
@@ -175,8 +176,9 @@ class MeshcatSocket(_Socket):
         self.close(1001, "the run has ended")
 
     def _pass_on(self) -> None:
-        if len(self.newest) and self.sent - self.drawn < MOST_AHEAD:
+        if len(self.newest) and self.sent - self.drawn < (2 if self.took_s < QUICK_S else 1):
             self.sent += 1
+            self.sent_s = time.monotonic()
             self.say(self.sent.to_bytes(4, "little") + self.newest.take())
 
     def on_message(self, message: str | bytes) -> None:
@@ -184,6 +186,8 @@ class MeshcatSocket(_Socket):
             self.close(1008, "broken message")
             return
         self.drawn = max(self.drawn, min(int(message), self.sent))
+        if self.drawn == self.sent:
+            self.took_s = time.monotonic() - self.sent_s
         self._pass_on()
 
     def on_close(self) -> None:

@@ -78,6 +78,19 @@ class ConsoleServer:
         """What a person opens in a browser on this machine."""
         return f"http://localhost:{self.port}/{self.access.token}/"
 
+    @property
+    def network_address(self) -> str:
+        """What a tablet in the same network opens; empty where no other machine may join."""
+        if not self.access.open_to_network:
+            return ""
+        with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as probe:
+            try:
+                probe.connect(("192.0.2.1", 9))  # sends nothing: asks which of our addresses leads outside
+                own = probe.getsockname()[0]
+            except OSError:
+                own = socket.gethostname()
+        return f"http://{own}:{self.port}/{self.access.token}/"
+
     def start(self) -> None:
         """Serve, in a thread of its own."""
         self._thread.start()

@@ -34,7 +34,20 @@ export function showEnd(summary, link) {
   buttons.className = "row";
   const close = document.createElement("button");
   close.textContent = "Close";
-  close.addEventListener("click", () => card.close());
+  close.addEventListener("click", () => {
+    link.send({ type: "leave" });
+    card.close();
+  });
+  if (summary.again) {
+    const again = document.createElement("button");
+    again.className = "main calls";
+    again.textContent = "Run again";
+    again.addEventListener("click", () => {
+      link.send({ type: "again" });
+      card.close();
+    });
+    buttons.append(again);
+  }
   buttons.append(close);
   card.replaceChildren(title, why, list, buttons);
   if (!card.open) card.showModal();

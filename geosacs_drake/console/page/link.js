@@ -1,6 +1,7 @@
 // The link to the robot: numbered messages there, status back. It reconnects by itself.
 
 const RETRY_MS = 500;
+const ENDED_MS = 3000;   // after the end: it may run again
 const SILENT_MS = 3000;  // without a status the link counts as lost
 
 export class Link extends EventTarget {
@@ -30,7 +31,7 @@ export class Link extends EventTarget {
     this.socket = this.you = null;
     socket?.close();
     this.tell("lost");
-    setTimeout(() => this.connect(), RETRY_MS);
+    setTimeout(() => this.connect(), document.body.dataset.ended ? ENDED_MS : RETRY_MS);
   }
 
   get open() {

@@ -78,6 +78,7 @@ link.addEventListener("welcome", ({ detail }) => {
   clearHistory();
   detail.history.forEach(showEvent);
   notice("");
+  if (document.body.dataset.ended && !detail.end) location.reload();  // it runs again: begin with a clean page
   byId("end").close();
   if (detail.end) showEnd(detail.end, link);
 });
@@ -93,10 +94,14 @@ link.addEventListener("status", ({ detail }) => {
 });
 link.addEventListener("event", ({ detail }) => showEvent(detail));
 link.addEventListener("told", ({ detail }) => notice(detail.text, 4000));
-link.addEventListener("end", ({ detail }) => showEnd(detail, link));
+link.addEventListener("end", ({ detail }) => {
+  document.body.dataset.ended = "yes";
+  showEnd(detail, link);
+});
 link.addEventListener("lost", () => {
   stick.centre();
-  if (!byId("end").open) notice("No connection to the robot: the stick is at its centre. Trying again …");
+  const ended = document.body.dataset.ended;
+  if (!byId("end").open && !ended) notice("No connection to the robot: the stick is at its centre. Trying again …");
 });
 
 let noticeTimer = null;

@@ -1,0 +1,23 @@
+"""Running once more: the same command in the same process and at the same address, so that open pages find it."""
+
+from __future__ import annotations
+
+import os
+import sys
+from typing import NoReturn
+
+_PLACE = "GEOSACS_CONSOLE"
+
+
+def run_again(port: int, token: str) -> NoReturn:
+    """Begin the command anew; the pages of `port` with `token` stay and connect again."""
+    sys.stdout.flush()
+    sys.stderr.flush()
+    os.environ[_PLACE] = f"{port} {token}"
+    os.execv(sys.executable, [sys.executable, *sys.orig_argv[1:]])
+
+
+def earlier_place() -> tuple[int, str] | None:
+    """Port and token of the run that this one follows; None where it is the first."""
+    port, _, token = os.environ.pop(_PLACE, "").partition(" ")
+    return (int(port), token) if port.isdecimal() and token else None
