@@ -34,8 +34,9 @@ ROWS = (
 print("| symbol | value | in the code | what it does |\n|---|---|---|---|")
 for symbol, value, where, what in ROWS:
     shown = value if isinstance(value, str) else format(value, "g")
+    short = ".".join(where.split(".")[-2:])
     field = re.sub(r"(Options)\.\w+$", r"\1", where)  # fields are described with their class
-    print(f"| {symbol} | {shown} | [`{where}`][{field}] | {what} |")
+    print(f"| {symbol} | {shown} | [`{short}`][{field}] | {what} |")
 
 figure = new_figure(11, 3)
 weight, stick, decay, knots = figure.subplots(1, 4)

@@ -103,12 +103,21 @@ def canal_page(
 
 
 def write_html(output: str | os.PathLike, page: str) -> None:
-    """Write a page by way of a temporary file."""
+    """Write a page by way of a temporary file.
+
+    Args:
+        output: the file, `.html`.
+        page: its whole text.
+    """
     write_and_rename(Path(output), lambda stream: stream.write(page.encode("utf-8")))
 
 
 def serve(page: str, port: int = 0) -> ThreadingHTTPServer:
     """A server on localhost that shows one page; run it with `serve_forever`.
+
+    Args:
+        page: the whole text of the page.
+        port: TCP port on localhost; 0 picks a free one.
 
     Raises:
         InputError: the port is taken.

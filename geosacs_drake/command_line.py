@@ -66,7 +66,12 @@ def _first_sentence(box: str) -> str:
 
 
 def status_of(main: Callable[[], ExitStatus], prog: str) -> ExitStatus:
-    """The status of a command's `main`; what it cannot use becomes one line on standard error."""
+    """The status of a command's `main`; what it cannot use becomes one line on standard error.
+
+    Args:
+        main: the command.
+        prog: its name, for messages.
+    """
     try:
         return main()
     except GeosacsError as error:
@@ -87,7 +92,12 @@ def status_of(main: Callable[[], ExitStatus], prog: str) -> ExitStatus:
 
 
 def end(main: Callable[[], ExitStatus], prog: str) -> NoReturn:
-    """Run a command's `main` and leave with its status, whoever reads or does not read what it prints."""
+    """Run a command's `main` and leave with its status, whoever reads or does not read what it prints.
+
+    Args:
+        main: the command.
+        prog: its name, for messages.
+    """
     with unbroken_streams():
         status = status_of(main, prog)
     sys.exit(int(status))

@@ -10,7 +10,14 @@ from diagrams.shared_autonomy import SharedAutonomy
 
 
 def describe_failure(error: BaseException, system: SharedAutonomy, rest: Rest, root: Context) -> str:
-    """One line without the library's own words, which the summary has under `failure`."""
+    """One line without the library's own words, which the summary has under `failure`.
+
+    Args:
+        error: what was raised.
+        system: the run's diagram.
+        rest: what sleeps in it.
+        root: the diagram's context, as it was then.
+    """
     try:
         state = _state(system, rest, root)
     except (RuntimeError, ValueError, SystemExit):  # of Drake, asked about a state that is none

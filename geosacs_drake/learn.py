@@ -106,7 +106,12 @@ def orientation_hint(canal: CanalSurface) -> list[str]:
 
 
 def report(canal: CanalSurface, quality: CanalQuality) -> list[str]:
-    """What a person wants to know about a canal, line by line."""
+    """What a person wants to know about a canal, line by line.
+
+    Args:
+        canal: as learned.
+        quality: its figures.
+    """
     radii_mm, home = 1e3 * canal.radii, canal.home_disk
     narrow, wide = int(np.argmin(radii_mm)), int(np.argmax(radii_mm))
     x, y, z = canal.directrix[home]
@@ -210,7 +215,12 @@ def _view(page: str, port: int) -> None:
 
 
 def command(arguments: Sequence[str] | None = None, prog: str = PROG) -> NoReturn:
-    """Learn as the command line says (or `arguments`), and leave with the exit status."""
+    """Learn as the command line says (or `arguments`), and leave with the exit status.
+
+    Args:
+        arguments: the command line; None: what the process was given.
+        prog: the command's name, for messages.
+    """
     with Interrupts():
         end(lambda: main(parse(arguments, prog)), prog)
 

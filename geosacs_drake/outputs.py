@@ -80,6 +80,11 @@ def write_each(writers: Sequence[tuple[str, Callable[[], object]]]) -> list[str]
 
 
 def say_failures(prog: str, failures: Sequence[str]) -> None:
-    """Say on standard error what could not be written."""
+    """Say on standard error what could not be written.
+
+    Args:
+        prog: the command's name.
+        failures: one line for each file that could not be written.
+    """
     for line in failures:
         print(f"{prog}: {one_line(line)}", file=sys.stderr)

@@ -130,7 +130,12 @@ def plot_frames(output: str | os.PathLike, canal: CanalSurface) -> None:
 
 
 def rim_points(canal: CanalSurface, disks: np.ndarray) -> np.ndarray:
-    """Points around the rims of some disks, closed, clipped at support planes, [m]. Shape (len(disks), 49, 3)."""
+    """Points around the rims of some disks, closed, clipped at support planes, [m]. Shape (len(disks), 49, 3).
+
+    Args:
+        canal: the surface.
+        disks: continuous indices. Shape (P,).
+    """
     return np.array([[canal.point(disk, 1.0, phi) for phi in _RIM] for disk in disks.tolist()])
 
 
@@ -142,6 +147,10 @@ def frames_path(output: str | os.PathLike) -> Path:
 
 def save_figure(figure: Figure, output: str | os.PathLike) -> None:
     """Write a figure by way of a temporary file.
+
+    Args:
+        figure: drawn.
+        output: file to write: `.png`, `.pdf` or `.svg`.
 
     Raises:
         InputError: the file's ending is none that can be drawn.

@@ -52,6 +52,10 @@ def prepare_canal(scenario: Scenario, options: RunOptions) -> CanalSurface:
 
     It is refined at the scenario's support planes, a loaded one also at its own.
 
+    Args:
+        scenario: the task.
+        options: of the run.
+
     Raises:
         InputError: a file cannot be used, or the canal passes beyond a support plane.
     """

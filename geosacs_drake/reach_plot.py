@@ -23,6 +23,10 @@ _COLORS = LinearSegmentedColormap.from_list("reach", [(0.84, 0.19, 0.15), (0.99,
 def lio_reach(canal: CanalSurface, options: IkOptions | None = None) -> ReachReport:
     """What the Lio reaches of a canal, with a progress bar when it takes long.
 
+    Args:
+        canal: in the robot's base frame.
+        options: of the inverse kinematics; None for the defaults.
+
     Raises:
         InputError: the canal's home is out of reach.
     """
@@ -43,7 +47,13 @@ def reach_path(plot: Path) -> Path:
 
 
 def plot_reach(path: Path, canal: CanalSurface, report: ReachReport) -> None:
-    """Draw the canal coloured by reach, the share of each disk, and where on the rim it ends; png, pdf or svg."""
+    """Draw the canal coloured by reach, the share of each disk, and where on the rim it ends; png, pdf or svg.
+
+    Args:
+        path: file to write.
+        canal: the surface.
+        report: what the arm reaches of it.
+    """
     figure = Figure(figsize=(12, 6.5), layout="constrained")
     grid = figure.add_gridspec(2, 2, width_ratios=(1.15, 1.0))
     space = figure.add_subplot(grid[:, 0], projection="3d")

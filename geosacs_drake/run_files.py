@@ -29,6 +29,10 @@ ENDINGS = {"summary": (".json",), "log": (".npz",), "record": (".html", ".htm"),
 def check_run_files(options: RunOptions, scenario: Scenario) -> None:
     """Refuse outputs that could not be written, or that would destroy something, before anything is computed.
 
+    Args:
+        options: of the run: which files are to be written.
+        scenario: names files that are read.
+
     Raises:
         InputError: with the option, the file and the remedy.
     """
@@ -40,7 +44,12 @@ def check_run_files(options: RunOptions, scenario: Scenario) -> None:
 
 
 def inputs_of(options: RunOptions, scenario: Scenario) -> Iterator[Path]:
-    """What a run reads: scenario, demonstrations, canal, operator, models."""
+    """What a run reads: scenario, demonstrations, canal, operator, models.
+
+    Args:
+        options: of the run.
+        scenario: of the run.
+    """
     yield from options.demos
     if options.canal is not None:
         yield options.canal

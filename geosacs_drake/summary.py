@@ -125,7 +125,12 @@ WALL_CLOCK_KEYS = ("ik.p50_ms", "ik.p99_ms", "realtime_factor", "realtime_factor
 
 
 def write_summary(path: Path, summary: Mapping[str, Any]) -> None:
-    """Write a summary as JSON, to a temporary file that is then renamed."""
+    """Write a summary as JSON, to a temporary file that is then renamed.
+
+    Args:
+        path: file to write.
+        summary: what `summarize` gives.
+    """
     text = json.dumps(summary, indent=2, allow_nan=False) + "\n"
     write_and_rename(path, lambda stream: stream.write(text.encode()))
 

@@ -165,6 +165,8 @@ def _keys() -> str:
         lines.append(f"{_class_docstring(schema)}\n\n| key | what it may be | default | meaning |\n|---|---|---|---|")
         meanings, hints = _meanings(schema), typing.get_type_hints(schema, include_extras=True)
         for field in dataclasses.fields(schema):
+            if field.name == "folder":  # set on loading
+                continue
             kind, below = _kind(hints[field.name])
             path = f"{where}.{field.name}" if where else field.name
             waiting += [(path, inner) for inner in below]
@@ -233,9 +235,12 @@ def _class_docstring(schema: type) -> str:
 
 
 def _meanings(schema: type) -> dict[str, str]:
-    """What is written below the fields, or in the class's list of attributes."""
-    node = _class_of(schema)
+    """What is written below the fields, its bases' too, or in the class's list of attributes."""
     found: dict[str, str] = {}
+    for base in schema.__bases__:
+        if dataclasses.is_dataclass(base):
+            found |= _meanings(base)
+    node = _class_of(schema)
     listed = (ast.get_docstring(node) or "").partition("Attributes:")[2]
     for match in re.finditer(r"^    (\w+): (.*(?:\n {8}.*)*)", listed, re.MULTILINE):
         found[match[1]] = " ".join(match[2].split())

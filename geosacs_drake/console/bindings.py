@@ -44,7 +44,12 @@ class BindingFiles:
         return found
 
     def keep(self, name: str, bindings: dict[str, Any]) -> str:
-        """Write bindings to the file of a name that is safe as one; what a person is told."""
+        """Write bindings to the file of a name that is safe as one; what a person is told.
+
+        Args:
+            name: of the file, without its ending.
+            bindings: what is kept.
+        """
         path = self.folder / f"{name}.json"
         text = json.dumps(bindings, indent=2) + "\n"
         try:

@@ -89,7 +89,13 @@ class Console:
         )
 
     def show_standing(self, before: str, text: str, time_s: float) -> None:
-        """What holds from now on."""
+        """What holds from now on.
+
+        Args:
+            before: what held until now.
+            text: what holds; empty for nothing.
+            time_s: when, [s].
+        """
         self._standing = text
 
     def standing(self) -> str:
@@ -97,13 +103,25 @@ class Console:
         return self._standing
 
     def choose_mapping(self, canal: CanalSurface, mapping: str, seat: str) -> MappingChoice:
-        """Begin with a mapping of the stick; pages may choose another."""
+        """Begin with a mapping of the stick; pages may choose another.
+
+        Args:
+            canal: that is travelled.
+            mapping: at the start: axes, seat or view.
+            seat: where the person sits at the start.
+        """
         self._mapping, self._seat = mapping, seat
         self.answers.mapping = MappingChoice(canal, chosen_view(mapping, seat))
         return self.answers.mapping
 
     def report(self, system: SharedAutonomy, canal: CanalSurface, scenario: Scenario) -> StatusReporter:
-        """Tell the pages of a run; call what is returned after each step of it."""
+        """Tell the pages of a run; call what is returned after each step of it.
+
+        Args:
+            system: the run's diagram.
+            canal: that is travelled.
+            scenario: of the run.
+        """
         navigation = scenario.navigation
         self.answers.full_stick_mm = 1000 * 20.0 / navigation.delta * JOYSTICK_PERIOD
         self.server.about = {

@@ -64,7 +64,13 @@ class Control:
     # ---- what pages do ----
 
     def drive(self, page: str, stick: tuple[float, float], age_s: float = 0.0) -> str:
-        """Hold the stick at `stick` (k_x, k_y) until told otherwise, or until nobody confirms it."""
+        """Hold the stick at `stick` (k_x, k_y) until told otherwise, or until nobody confirms it.
+
+        Args:
+            page: that asks.
+            stick: right and up, in the unit disc.
+            age_s: how old the command is, [s].
+        """
         with self._lock:
             moved = stick != (0.0, 0.0)
             if moved and (refusal := self._refusal(page)):
@@ -78,7 +84,13 @@ class Control:
             return ""
 
     def step(self, page: str, samples: list[tuple[float, float]], age_s: float = 0.0) -> str:
-        """Move the stick so for as many samples as are given, and centre it then."""
+        """Move the stick so for as many samples as are given, and centre it then.
+
+        Args:
+            page: that asks.
+            samples: the stick of each sample of the step.
+            age_s: how old the command is, [s].
+        """
         with self._lock:
             if refusal := self._refusal(page):
                 return refusal
@@ -89,7 +101,13 @@ class Control:
             return ""
 
     def press(self, page: str, button: str, age_s: float = 0.0) -> str:
-        """Press a button once. Stop is heard from any page, however late it comes."""
+        """Press a button once. Stop is heard from any page, however late it comes.
+
+        Args:
+            page: that asks.
+            button: one of `BUTTONS`.
+            age_s: how old the command is, [s].
+        """
         with self._lock:
             if button == "stop":
                 self._stopped = self._person = True

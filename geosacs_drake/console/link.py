@@ -29,13 +29,23 @@ class Link:
         self._told: dict[int, float] = {}
 
     def tell(self, number: int, now_s: float) -> None:
-        """Remember when a status was sent."""
+        """Remember when a status was sent.
+
+        Args:
+            number: of the status.
+            now_s: when it was sent, [s].
+        """
         self._told[number] = now_s
         if len(self._told) > 200:
             del self._told[next(iter(self._told))]
 
     def receive(self, message: AnyMessage, now_s: float) -> str:
-        """Carry out a message that came at `now_s`; what the page is told, empty for nothing."""
+        """Carry out a message that came at `now_s`; what the page is told, empty for nothing.
+
+        Args:
+            message: as it was read.
+            now_s: when it came, [s].
+        """
         self.last = message.n
         age_s = self._age(message.t, now_s)
         text = self._carry_out(message, age_s, now_s)
@@ -91,7 +101,12 @@ class Answers:
     on_word: Callable[[str, str], str] = staticmethod(lambda page, word: "")
 
     def step_samples(self, direction: tuple[float, float], mm: float) -> list[tuple[float, float]]:
-        """Sticks that move the point `mm` in a direction, one a sample: equal ones, as few as do."""
+        """Sticks that move the point `mm` in a direction, one a sample: equal ones, as few as do.
+
+        Args:
+            direction: right and up.
+            mm: how far, [mm].
+        """
         norm = math.hypot(*direction)
         if norm == 0:
             return []
@@ -100,15 +115,30 @@ class Answers:
         return [(k * direction[0], k * direction[1])] * samples
 
     def change_view(self, page: str, view: View) -> str:
-        """A page has chosen how the stick is mapped: the one in control, or any where nobody is."""
+        """A page has chosen how the stick is mapped: the one in control, or any where nobody is.
+
+        Args:
+            page: that asks.
+            view: what it asks for.
+        """
         if self.mapping is not None:
             self.mapping.choose(view.mapping, view.seat, view.right, view.up, follow=view.follow)
         return ""
 
     def keep_bindings(self, name: str, bindings: dict) -> str:
-        """A page wants the bindings of a device kept."""
+        """A page wants the bindings of a device kept.
+
+        Args:
+            name: of the file.
+            bindings: what is kept.
+        """
         return self.bindings.keep(name, bindings)
 
     def word(self, page: str, word: str) -> str:
-        """Another word of a page."""
+        """Another word of a page.
+
+        Args:
+            page: that asks.
+            word: what it says.
+        """
         return self.on_word(page, word)

@@ -46,7 +46,15 @@ class MappingChoice:
         *,
         follow: bool = False,
     ) -> None:
-        """Choose as a page says it; `follow` is the gripper's own view, which turns along the canal."""
+        """Choose as a page says it; `follow` is the gripper's own view, which turns along the canal.
+
+        Args:
+            mapping: axes, seat or view.
+            seat: where the person sits.
+            right: of the camera's picture, in B. Shape (3,).
+            up: of the camera's picture, in B. Shape (3,).
+            follow: whether the view is followed as it turns.
+        """
         if follow and mapping == "view":
             self.ask(gripper_view(self._canal))
         else:

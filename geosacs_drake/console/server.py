@@ -141,7 +141,12 @@ class ConsoleServer:
         return json.dumps(words, default=_plain)
 
     def refused(self, code: int, why: str) -> str:
-        """What is said to a page whose message is broken."""
+        """What is said to a page whose message is broken.
+
+        Args:
+            code: HTTP status.
+            why: in words.
+        """
         return json.dumps({"type": "refused", "code": code, "text": why})
 
     def _serve(self) -> None:

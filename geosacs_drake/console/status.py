@@ -60,7 +60,12 @@ class StatusReporter:
             self._show(self.status(root, now))
 
     def status(self, root: Context, now_s: float) -> dict[str, Any]:
-        """The status as plain data; `now_s` is the time on the wall [s]."""
+        """The status as plain data; `now_s` is the time on the wall [s].
+
+        Args:
+            root: the diagram's context.
+            now_s: when, on the wall's clock, [s].
+        """
         system, canal = self._system, self._canal
         navigator = system.navigator.GetMyContextFromRoot(root)
         state = system.navigator.state(navigator)
