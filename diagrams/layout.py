@@ -29,7 +29,12 @@ class Spot:
 
 
 def yaw_pose(position: list[float] | np.ndarray, yaw: float) -> RigidTransform:
-    """A pose that is upright: a position [m] and a turn about z [rad]."""
+    """A pose that is upright: a position [m] and a turn about z [rad].
+
+    Args:
+        position: [m]. Shape (3,).
+        yaw: about z, [rad].
+    """
     return RigidTransform(RollPitchYaw(0, 0, yaw), np.asarray(position, dtype=float))
 
 
@@ -143,13 +148,24 @@ def _clear(apart: np.ndarray, room: Room | None) -> bool:
 
 
 def hand_above(room: Room, spot: np.ndarray) -> np.ndarray:
-    """What the hand is above on its way down to a spot (2,), both from the region's middle [m]. Shape (heights, 2)."""
+    """What the hand is above on its way down to a spot (2,), both from the region's middle [m]. Shape (heights, 2).
+
+    Args:
+        room: what the fingers take.
+        spot: where the thing lies, from the middle of its region, [m]. Shape (2,).
+    """
     x, y = spot
     return np.array([[dx + a * x - b * y, dy + b * x + a * y] for dx, dy, a, b in room.way]).reshape(-1, 2)
 
 
 def in_the_way(room: Room | None, spot: np.ndarray, other: np.ndarray) -> bool:
-    """Whether the hand, on its way to a spot, meets what stands at another: (2,) from the region's middle [m]."""
+    """Whether the hand, on its way to a spot, meets what stands at another: (2,) from the region's middle [m].
+
+    Args:
+        room: what the fingers take about `spot`; None for nothing.
+        spot: where a thing lies, from the middle of its region, [m]. Shape (2,).
+        other: where another lies, likewise. Shape (2,).
+    """
     if room is None:
         return False
     aside = [other - hand for hand in hand_above(room, spot)]

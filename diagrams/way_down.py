@@ -25,7 +25,12 @@ RING = 0.9
 
 
 def room_at(canal: CanalSurface, disk: int) -> Room:
-    """What the fingers need about a thing at the first or the last disk, and how they come down on it; in B."""
+    """What the fingers need about a thing at the first or the last disk, and how they come down on it; in B.
+
+    Args:
+        canal: in the robot's base frame.
+        disk: continuous index.
+    """
     q = canal.orientations[disk]
     return Room(
         yaw_deg=math.degrees(opens_towards(q)),

@@ -10,7 +10,12 @@ _PLACE = "GEOSACS_CONSOLE"
 
 
 def run_again(port: int, token: str) -> NoReturn:
-    """Begin the command anew; the pages of `port` with `token` stay and connect again."""
+    """Begin the command anew; the pages of `port` with `token` stay and connect again.
+
+    Args:
+        port: of the console, which the new run takes over.
+        token: of its address.
+    """
     sys.stdout.flush()
     sys.stderr.flush()
     os.environ[_PLACE] = f"{port} {token}"
