@@ -13,7 +13,8 @@ from benchmarks.canal_quality import WAYS, Hardness, hard_demonstrations
 from benchmarks.fuzz_options import random_options
 from canal.editing import add_demonstration, cut, join, reverse
 from canal.errors import InputError
-from canal.learning import LearningOptions, learn_canal
+from canal.learning import learn_canal
+from canal.learning_options import LearningOptions
 from canal.refinement import SupportPlane
 from canal.retargeting import retarget
 from canal.surface import CanalSurface

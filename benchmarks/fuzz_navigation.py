@@ -12,7 +12,8 @@ import numpy as np
 from benchmarks.canal_quality import WAYS, Hardness, hard_demonstrations
 from benchmarks.fuzz_options import random_options
 from canal.joystick import JOYSTICK_SIZE
-from canal.learning import LearningOptions, learn_canal
+from canal.learning import learn_canal
+from canal.learning_options import LearningOptions
 from canal.navigation import NavigationOptions, NavigationState, disks_per_second, initial_state, step
 from canal.refinement import SupportPlane
 from canal.surface import CanalSurface

@@ -11,7 +11,7 @@ import pytest
 
 from benchmarks import fuzz, fuzz_navigation
 from benchmarks.fuzz_options import random_options
-from canal.learning import LearningOptions
+from canal.learning_options import LearningOptions
 from canal.navigation import NavigationOptions
 from diagrams.ik_options import IkOptions
 from diagrams.operator_options import OperatorOptions
