@@ -141,7 +141,7 @@ def _cost(part: np.ndarray, length: np.ndarray, away: tuple[np.ndarray, np.ndarr
     if away is not None:
         (u, v), long = away
         free = AWAY * (long[:, None] - (u[:, None] * np.cos(GRID) + v[:, None] * np.sin(GRID)))
-    return np.where(held, cost, free)
+    return np.asarray(np.where(held, cost, free))
 
 
 def _cheapest(cost: np.ndarray) -> np.ndarray:
