@@ -19,13 +19,13 @@ import numpy as np
 
 from benchmarks.canal_quality import RECORDED, recorded, shipped
 from benchmarks.table import Row, print_table, write_csv
-from canal.alignment import BAND
-from canal.joystick import JOYSTICK_SIZE
-from canal.learning import N_POINTS, learn_canal
+from canal.learning.learn import N_POINTS, learn_canal
+from canal.learning.trimming import trim
+from canal.learning.warping import warping_path
+from canal.learning_options import BAND
 from canal.navigation import initial_state, step
+from canal.navigation.joystick import JOYSTICK_SIZE
 from canal.surface import CanalSurface
-from canal.trimming import trim
-from canal.warping import warping_path
 from models import MODELS
 
 OUTPUT = Path(__file__).parents[1] / "build" / "bench-canal.csv"

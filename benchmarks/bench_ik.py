@@ -15,14 +15,14 @@ from pathlib import Path
 import numpy as np
 from scipy.optimize import minimize
 
-from benchmarks.ik_cases import DT, Case, adversarial_cases, demonstration_cases
-from benchmarks.ik_clear import keep_clear
-from benchmarks.ik_fuzz import fuzz
-from benchmarks.ik_rivals import SAME_OBJECTIVE, Contender, contenders
+from benchmarks.ik.cases import DT, Case, adversarial_cases, demonstration_cases
+from benchmarks.ik.clear import keep_clear
+from benchmarks.ik.fuzz import fuzz
+from benchmarks.ik.rivals import SAME_OBJECTIVE, Contender, contenders
 from benchmarks.table import Row, print_table, write_csv
-from diagrams.ik_solver import IkSolver
-from diagrams.ik_target import wanted_pose
-from diagrams.lio_arm import TCP_FRAME, make_arm_plant
+from diagrams.ik.solver import IkSolver
+from diagrams.ik.target import wanted_pose
+from diagrams.station.lio_arm import TCP_FRAME, make_arm_plant
 
 _GAP_FLOOR = 1e-9
 _PACE = 1e-3

@@ -18,9 +18,9 @@ import numpy as np
 from benchmarks.half_step import apart
 from benchmarks.soft_rig import CLOSED, OPEN, Rig, Setting
 from benchmarks.table import Row, print_table, write_csv
-from diagrams.soft_contact import MARGIN
-from diagrams.soft_items import SoftMaterial
-from diagrams.soft_shapes import make_shape
+from diagrams.deformable.contact import MARGIN
+from diagrams.deformable.items import SoftMaterial
+from diagrams.deformable.laundry import make_shape
 
 KINDS = ("sock", "tshirt", "towel")
 PADS = 5

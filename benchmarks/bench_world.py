@@ -19,16 +19,16 @@ import numpy as np
 from pydrake.systems.framework import Context
 
 from benchmarks.table import Row, print_table, write_csv
-from diagrams.contacts import collision_shapes, each_contact
-from diagrams.resting_piece import make_piece
+from diagrams.deformable.items import soft_positions
+from diagrams.geometry.contacts import collision_shapes, each_contact
 from diagrams.scenario import load_scenario, with_items
-from diagrams.scene import RigidItem
+from diagrams.scene.scene import RigidItem
 from diagrams.shared_autonomy import SharedAutonomy, build_shared_autonomy
-from diagrams.soft_items import soft_positions
-from geosacs_drake.options import RunOptions
+from diagrams.station.sleeping_item import make_piece
 from geosacs_drake.prepare_canal import prepare_canal
+from geosacs_drake.results.summary import RunResult, summarize
+from geosacs_drake.run_options import RunOptions
 from geosacs_drake.simulate import simulate
-from geosacs_drake.summary import RunResult, summarize
 
 TICK_S = 0.01
 HALF_S = 0.5

@@ -17,8 +17,8 @@ from canal.demonstration import Demonstration, load_demonstration
 from canal.learning import learn_canal
 from canal.learning_options import LearningOptions
 from canal.quality import canal_quality, deviations, undershoot
-from canal.refinement import SupportPlane, dips
 from canal.retargeting import retarget, shape_cost
+from canal.support_planes import SupportPlane, dips
 from canal.surface import CanalSurface
 from canal.surface_file import SHAPES
 from models import MODELS

@@ -14,11 +14,11 @@ from pydrake.multibody.plant import AddMultibodyPlant
 from pydrake.systems.analysis import Simulator
 from pydrake.systems.framework import DiagramBuilder
 
-from diagrams.lio_station import plant_config
-from diagrams.soft_contact import prepare_for_cloth
-from diagrams.soft_items import add_soft_item, soft_positions
-from diagrams.soft_shapes import make_shape
-from diagrams.world import Contact
+from diagrams.deformable.contact import prepare_for_cloth
+from diagrams.deformable.items import add_soft_item, soft_positions
+from diagrams.deformable.laundry import make_shape
+from diagrams.scene.world import Contact
+from diagrams.station.lio_station import plant_config
 from models import MODELS
 
 FALLS = 3.0

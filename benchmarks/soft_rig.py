@@ -21,14 +21,14 @@ from pydrake.multibody.tree import (
 from pydrake.systems.analysis import Simulator
 from pydrake.systems.framework import DiagramBuilder
 
-from diagrams.lio_station import plant_config
-from diagrams.soft_contact import MARGIN, prepare_for_cloth
-from diagrams.soft_depth import FixedBoxes
-from diagrams.soft_items import SoftMaterial, add_soft_item, node_masses, soft_positions, soft_velocities
-from diagrams.soft_shapes import SoftShape
-from diagrams.world import Contact
+from diagrams.deformable.contact import MARGIN, prepare_for_cloth
+from diagrams.deformable.items import SoftMaterial, add_soft_item, node_masses, soft_positions, soft_velocities
+from diagrams.deformable.laundry import SoftShape
+from diagrams.geometry.box_depth import FixedBoxes
+from diagrams.scene.world import Contact
+from diagrams.station.lio_station import plant_config
 
-OPEN, CLOSED = 0.5236, -0.1  # [rad], as diagrams.lio_drive commands them
+OPEN, CLOSED = 0.5236, -0.1  # [rad], as diagrams.station.lio_drive commands them
 TICK = 0.01  # [s]
 
 

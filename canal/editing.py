@@ -9,15 +9,15 @@ import numpy as np
 from scipy.interpolate import CubicHermiteSpline, CubicSpline
 from scipy.optimize import linear_sum_assignment
 
-from canal.alignment import align_to, sample
 from canal.demonstration import Demonstration
 from canal.errors import InputError
-from canal.learning import N_POINTS, build_surface, disk_count, unit_tangents
+from canal.learning.alignment import align_to, sample
+from canal.learning.learn import N_POINTS, build_surface, disk_count, unit_tangents
+from canal.learning.splines import arc_length, fit_spline, knots_every, rotation_curve, slerp, uniform_in_arc
+from canal.learning.trimming import trim
 from canal.learning_options import LearningOptions
-from canal.refinement import SupportPlane
-from canal.splines import arc_length, fit_spline, knots_every, rotation_curve, slerp, uniform_in_arc
+from canal.support_planes import SupportPlane
 from canal.surface import CanalSurface
-from canal.trimming import trim
 
 LARGEST_GAP_M = 0.1  # between canals that are joined; a wider one is a motion nobody has shown
 _BRIDGE_SHARE = 0.08  # of the shorter canal, given up on either side of a joint for a smooth passage

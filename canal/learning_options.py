@@ -11,11 +11,14 @@ import pydantic
 from pydantic import AfterValidator, Field, model_validator
 from pydantic_core import ArgsKwargs
 
-from canal import orientation as orient
-from canal.alignment import BAND, WARP_SMOOTHING
 from canal.errors import InputError
 from canal.options import options, read_options
-from canal.refinement import SupportPlane
+from canal.support_planes import SupportPlane
+
+BAND = 0.15  # share of the length that the warping may run ahead or behind (Sakoe-Chiba)
+WARP_SMOOTHING = 0.03  # share of the length, σ of the smoothing of the warps
+ALPHA = 9.0  # α of the paper's Table I
+BETA = 0.3  # β of the paper's Table I
 
 PAPER: dict[str, Any] = {
     "interpolate": True,  # V-A: a spline through the points that the step filter leaves
@@ -88,8 +91,8 @@ class LearningOptions:
     cap_x_turn: bool = True
     y_window: Annotated[int, Field(ge=1, le=1000)] = 1
     support_planes: tuple[SupportPlane, ...] = ()
-    alpha: Annotated[float, Field(ge=0, le=100)] = orient.ALPHA
-    beta: Annotated[float, Field(ge=-10, le=10)] = orient.BETA
+    alpha: Annotated[float, Field(ge=0, le=100)] = ALPHA
+    beta: Annotated[float, Field(ge=-10, le=10)] = BETA
 
     @model_validator(mode="before")
     @classmethod

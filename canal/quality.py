@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.spatial import KDTree
 
-from canal.relaxation import crossings, tilts
+from canal.learning.disk_normals import crossings, tilts
 from canal.surface import CanalSurface
 
 _RATIO = 0.8  # η at which steps of points on the disks are compared with those of the centres
@@ -48,7 +48,7 @@ class CanalQuality:
 
 def canal_quality(canal: CanalSurface) -> CanalQuality:
     """Measure a canal."""
-    from canal.frames import bishop_frames
+    from canal.learning.frames import bishop_frames
 
     c, r = canal.directrix, canal.radii
     apart = np.linalg.norm(canal.demonstrations - c, axis=2) - r

@@ -11,7 +11,7 @@ from scipy.spatial.transform import Rotation, Slerp
 from canal.editing import beyond_data, own_options, rebuild
 from canal.errors import InputError
 from canal.quality import angles, canal_quality, curvature
-from canal.refinement import SupportPlane
+from canal.support_planes import SupportPlane
 from canal.surface import CanalSurface
 
 _EVEN = 0.05  # share of the length over which curvature is averaged when shapes are compared

@@ -8,7 +8,7 @@ import numpy as np
 
 from canal.disk_lookup import MIN_RADIUS, DiskLookup
 from canal.learning_options import MEASURED, LearningOptions
-from canal.refinement import SupportPlane
+from canal.support_planes import SupportPlane
 
 __all__ = ["MIN_RADIUS", "CanalSurface"]
 

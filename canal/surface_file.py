@@ -9,11 +9,11 @@ import numpy as np
 
 from canal.errors import InputError
 from canal.files import write_npz
+from canal.learning.trimming import continuous_signs
 from canal.learning_options import MEASURED, LearningOptions, from_json, to_json
 from canal.reading import as_numbers, read_npz
-from canal.refinement import SupportPlane
+from canal.support_planes import SupportPlane
 from canal.surface import CanalSurface
-from canal.trimming import continuous_signs
 
 FORMAT_VERSION = 1
 """Of the files that are written; later ones are refused."""

@@ -9,8 +9,8 @@ from enum import StrEnum
 import numpy as np
 from pydrake.systems.framework import Context, DiagramBuilder, DiscreteValues, LeafSystem
 
-from canal.joystick import JOYSTICK_PERIOD
 from canal.navigation import FIELD_NAMES, Ignored, NavigationState, initial_state
+from canal.navigation.joystick import JOYSTICK_PERIOD
 from canal.surface import CanalSurface
 
 

@@ -14,7 +14,7 @@ import numpy as np
 
 from canal.editing import with_support_planes
 from canal.errors import InputError
-from canal.refinement import SupportPlane
+from canal.support_planes import SupportPlane
 from canal.surface import CanalSurface
 from diagrams.fitted_table import FittedTable, fit_tables
 from diagrams.ik_solver import IkSolver

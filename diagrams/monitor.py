@@ -3,11 +3,11 @@
 import numpy as np
 from pydrake.systems.framework import Context, DiagramBuilder, DiscreteValues, EventStatus, LeafSystem
 
-from canal.joystick import JOYSTICK_PERIOD
 from canal.navigation import FIELD_NAMES, NavigationState, phase
+from canal.navigation.joystick import JOYSTICK_PERIOD
 from canal.options import Positive, Share, options
 from canal.surface import CanalSurface
-from diagrams.goals import Goal
+from diagrams.geometry.goals import Goal
 
 
 @options("monitor")

@@ -1,11 +1,10 @@
-"""The canal navigator: `canal.navigation` as a system with its state in the Context."""
+"""The canal navigator: `canal.navigation.travel` as a system with its state in the Context."""
 
 from __future__ import annotations
 
 import numpy as np
 from pydrake.systems.framework import BasicVector, Context, DiagramBuilder, DiscreteValues, LeafSystem
 
-from canal.joystick import JOYSTICK_PERIOD, JOYSTICK_SIZE
 from canal.navigation import (
     FIELD_NAMES,
     NavigationOptions,
@@ -13,6 +12,7 @@ from canal.navigation import (
     initial_state,
     step,
 )
+from canal.navigation.joystick import JOYSTICK_PERIOD, JOYSTICK_SIZE
 from canal.surface import CanalSurface
 
 FINGERS_MOVING = 0.05
@@ -30,10 +30,10 @@ class CanalNavigator(LeafSystem):
                      └────────────────┘
     ```
 
-    - `joystick`: see `canal.joystick`.
+    - `joystick`: see `canal.navigation.joystick`.
     - `gripper_state`: angle [rad] and rate [rad/s] of the fingers.
     - `alarm`: optional; the contact force that is above its limit [N], 0 for none, and the net force on the hand in the
-      base frame [N] (see `canal.pressing`).
+      base frame [N] (see `canal.navigation.pressing`).
     - `X_BT_desired`: position [m] and quaternion (w, x, y, z) of the wanted TCP pose in the base frame.
     - `orientation_weight`: w_o(s) of paper V-C.
     - `gripper_command`: 1 closed, 0 open.

@@ -8,10 +8,10 @@ import numpy as np
 from pydrake.systems.framework import Context, DiagramBuilder, OutputPort
 from pydrake.systems.primitives import LogVectorOutput, VectorLogSink
 
-from canal.joystick import GRIPPER, JOYSTICK_PERIOD
 from canal.navigation import FIELD_NAMES, Leg
-from diagrams.ik_system import IkStatusField
-from diagrams.lio_drive import ARM, MOVING
+from canal.navigation.joystick import GRIPPER, JOYSTICK_PERIOD
+from diagrams.ik.system import IkStatusField
+from diagrams.station.lio_drive import ARM, MOVING
 
 
 class RunLog:

@@ -12,11 +12,11 @@ from canal.errors import InputError
 from canal.learning_options import LearningOptions
 from canal.navigation import NavigationOptions
 from canal.options import Angle, Coordinate, options, read_options, short
-from canal.refinement import SupportPlane
-from diagrams.ik_options import IkOptions
+from canal.support_planes import SupportPlane
+from diagrams.ik.options import IkOptions
 from diagrams.monitor import MonitorOptions
-from diagrams.operator_options import OperatorOptions
-from diagrams.world import Kind, World, check_world
+from diagrams.operator.options import OperatorOptions
+from diagrams.scene.world import Kind, World, check_world
 from models import MODELS, SCENARIOS
 
 

@@ -12,32 +12,32 @@ from pydrake.geometry import Meshcat, MeshcatVisualizer, MeshcatVisualizerParams
 from pydrake.systems.framework import Context, Diagram, DiagramBuilder, OutputPort
 from pydrake.systems.primitives import ZeroOrderHold
 
-from canal.joystick import JOYSTICK_PERIOD, in_step
+from canal.navigation.joystick import JOYSTICK_PERIOD, in_step
 from canal.surface import CanalSurface
 from diagrams.announcements import Announcement, Announcer
-from diagrams.cameras import VideoRecorder
-from diagrams.canal_view import CanalView
-from diagrams.clear_arm import make_lio_solver
+from diagrams.deformable.view import SoftView
 from diagrams.force_alarm import ForceAlarm
-from diagrams.ik_system import OrientationWeightedIk
-from diagrams.joint_pace import at_joint_pace, unhurried
-from diagrams.joystick import JoystickSelector, RecordedJoystick
-from diagrams.joystick_recording import JoystickRecording
-from diagrams.lio_arm import arm_speeds
-from diagrams.lio_station import START_POSTURE, LioStation, arm_stops
-from diagrams.live_joystick import LiveJoystick, LiveSample
-from diagrams.meshcat_joystick import MeshcatJoystick
-from diagrams.meshcat_notice import MeshcatNotice
+from diagrams.ik.joint_pace import at_joint_pace, unhurried
+from diagrams.ik.reachability import reach_report
+from diagrams.ik.start_posture import StartPosture, find_start_posture
+from diagrams.ik.system import OrientationWeightedIk
 from diagrams.monitor import Monitor
 from diagrams.navigator import CanalNavigator
-from diagrams.operator import SimulatedOperator
-from diagrams.peaks import Peaks
-from diagrams.reach import reach_report
+from diagrams.operator.system import SimulatedOperator
 from diagrams.run_log import RunLog
 from diagrams.scenario import Scenario
-from diagrams.soft_view import SoftView
-from diagrams.start_posture import StartPosture, find_start_posture
-from diagrams.stick_mapping import StickMapping
+from diagrams.station.lio_arm import arm_speeds
+from diagrams.station.lio_ik import make_lio_solver
+from diagrams.station.lio_station import START_POSTURE, LioStation, arm_stops
+from diagrams.station.peaks import Peaks
+from diagrams.teleop.joystick_recording import JoystickRecording
+from diagrams.teleop.joystick_selector import JoystickSelector, RecordedJoystick
+from diagrams.teleop.live_joystick import LiveJoystick, LiveSample
+from diagrams.teleop.meshcat_joystick import MeshcatJoystick
+from diagrams.teleop.stick_mapping import StickMapping
+from diagrams.view.cameras import VideoRecorder
+from diagrams.view.canal_view import CanalView
+from diagrams.view.meshcat_notice import MeshcatNotice
 
 
 @dataclass(frozen=True)
@@ -117,18 +117,10 @@ def build_shared_autonomy(
     navigator = CanalNavigator.AddToBuilder(builder=builder, canal=canal, options=navigation, period=period)
     ik = builder.AddNamedSystem("ik", OrientationWeightedIk(solver, q_start=start.q, period=period))
     monitor = Monitor.AddToBuilder(builder=builder, canal=canal, goals=station.goals, options=scenario.monitor)
-    peaks = Peaks.AddToBuilder(
-        builder=builder,
-        contact_pairs=len(station.contact_pairs),
-        stops=arm_stops(station.plant),
-        speeds=arm_speeds(station.plant),
-        period=period,
-    )
+    pairs, stops, speeds = len(station.contact_pairs), arm_stops(station.plant), arm_speeds(station.plant)
+    peaks = Peaks.AddToBuilder(builder=builder, contact_pairs=pairs, stops=stops, speeds=speeds, period=period)
     alarm = ForceAlarm.AddToBuilder(
-        builder=builder,
-        contact_pairs=len(station.contact_pairs),
-        limit_n=scenario.monitor.force_limit_n,
-        period=period,
+        builder=builder, contact_pairs=pairs, limit_n=scenario.monitor.force_limit_n, period=period
     )
 
     # Each measurement is taken once a tick, before the plant's step: whoever needs it reads the same sample.

@@ -8,7 +8,7 @@ Cross-sections are circles throughout (Fig. 2 of the paper).
 import numpy as np
 from style import DIRECTRIX, draw_canal, fit, new_figure, save, solid
 
-from canal.learning import build_surface, unit_tangents
+from canal.learning.learn import build_surface, unit_tangents
 
 u = np.linspace(0.0, 1.0, 201)
 curve = np.column_stack([1.1 * u, 0.22 * np.sin(2 * np.pi * u), 0.16 * np.cos(1.4 * np.pi * u)])

@@ -12,19 +12,19 @@ import re
 import numpy as np
 from style import BLUE, GREEN, GREY, PINK, RED, new_figure, save
 
-from canal.frames import EPSILON
+from canal.learning.frames import EPSILON
+from canal.learning.orientation import orientation_weight
 from canal.learning_options import LearningOptions
 from canal.navigation import NavigationOptions
-from canal.orientation import orientation_weight
-from diagrams.ik_options import IkOptions
+from diagrams.ik.options import IkOptions
 
 learning, navigation, ik = LearningOptions(), NavigationOptions(), IkOptions()
 b = math.exp(learning.alpha * learning.beta)
-NAVIGATION, LEARNING = "canal.navigation_options.NavigationOptions", "canal.learning_options.LearningOptions"
+NAVIGATION, LEARNING = "canal.navigation.options.NavigationOptions", "canal.learning_options.LearningOptions"
 ROWS = (
     ("ε", EPSILON, "canal.frames.EPSILON", "below it two directions are taken for one"),
     ("λ", navigation.decay_lambda, f"{NAVIGATION}.decay_lambda", "the paper's decay of a ratio, per disk"),
-    ("w_p", ik.position_weight, "diagrams.ik_options.IkOptions.position_weight", "weight of position"),
+    ("w_p", ik.position_weight, "diagrams.ik.options.IkOptions.position_weight", "weight of position"),
     ("α", learning.alpha, f"{LEARNING}.alpha", "how fast spread lowers the weight of orientation"),
     ("β", learning.beta, f"{LEARNING}.beta", "the spread at which that weight is 1"),
     ("b", f"{b:.1f}", "canal.orientation.orientation_weight", "largest weight of orientation, exp(α β)"),

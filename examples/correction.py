@@ -27,9 +27,9 @@ from style import (
     solid,
 )
 
-from canal.joystick import JOYSTICK_SIZE
 from canal.navigation import initial_state, step
-from geosacs_drake.plotting import rim_points
+from canal.navigation.joystick import JOYSTICK_SIZE
+from geosacs_drake.results.plotting import rim_points
 
 canal = shipped_canal("relocation")
 stick = np.zeros(JOYSTICK_SIZE)

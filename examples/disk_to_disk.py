@@ -24,7 +24,7 @@ from style import (
     solid,
 )
 
-from geosacs_drake.plotting import rim_points
+from geosacs_drake.results.plotting import rim_points
 
 ETA, PHI = 0.75, np.radians(130.0)
 canal = shipped_canal("relocation")

@@ -10,8 +10,8 @@ neighbours (Fig. 3 of the paper, section IV-B).
 import numpy as np
 from style import BLACK, GREY, RED, TANGENT, X_AXIS, Y_AXIS, arrows, fit, new_figure, save, solid
 
-from canal.frames import bishop_frames, correction_frames
-from canal.learning import unit_tangents
+from canal.learning.frames import bishop_frames, correction_frames
+from canal.learning.learn import unit_tangents
 from canal.quality import angles
 
 u = np.linspace(0.0, 1.0, 301)

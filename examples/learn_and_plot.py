@@ -8,7 +8,7 @@ import sys
 
 from canal.demonstration import load_demonstration
 from canal.learning import learn_canal
-from geosacs_drake.plotting import plot_canal
+from geosacs_drake.results.plotting import plot_canal
 from models import MODELS
 
 output = sys.argv[1] if len(sys.argv) > 1 else "learn_and_plot.png"

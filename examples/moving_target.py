@@ -14,8 +14,8 @@ from pydrake.systems.primitives import ConstantVectorSource, LogVectorOutput, Tr
 from pydrake.trajectories import PiecewisePolynomial
 from style import BLACK, BLUE, GREY, RED, fit, new_figure, save, solid
 
-from diagrams.ik_system import IkStatusField, OrientationWeightedIk
-from diagrams.lio_arm import TCP_FRAME, arm_joints, arm_speeds, make_arm_plant
+from diagrams.ik.system import IkStatusField, OrientationWeightedIk
+from diagrams.station.lio_arm import TCP_FRAME, arm_joints, arm_speeds, make_arm_plant
 
 HOME = np.radians([-88.0, -20.0, 65.0, -2.0, 96.0, 2.0])
 DURATION, RATE = 12.0, 100.0

@@ -9,8 +9,8 @@ import sys
 
 from canal.demonstration import load_demonstration
 from canal.learning import learn_canal
-from canal.tour import Push, tour
-from geosacs_drake.plotting import plot_canal
+from canal.navigation.tour import Push, tour
+from geosacs_drake.results.plotting import plot_canal
 from models import MODELS
 
 output = sys.argv[1] if len(sys.argv) > 1 else "navigate.png"

@@ -11,11 +11,11 @@ from pydrake.systems.framework import DiagramBuilder
 from pydrake.systems.primitives import ConstantVectorSource, LogVectorOutput
 from style import BLUE, CORRECTION, GREEN, GREY, PATH, RED, draw_canal, fit, new_figure, save, shipped_canal, solid
 
-from canal.joystick import JOYSTICK_SIZE, K_X, K_Y, REVERSE, START
 from canal.navigation import FIELD_NAMES, NavigationOptions
-from diagrams.joystick import RecordedJoystick
-from diagrams.joystick_recording import JoystickRecording
+from canal.navigation.joystick import JOYSTICK_SIZE, K_X, K_Y, REVERSE, START
 from diagrams.navigator import CanalNavigator
+from diagrams.teleop.joystick_recording import JoystickRecording
+from diagrams.teleop.joystick_selector import RecordedJoystick
 
 canal = shipped_canal("relocation")
 script = (  # from, until [s], where in the joystick vector, value

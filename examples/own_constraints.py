@@ -13,9 +13,9 @@ from matplotlib.figure import Figure
 
 from canal.demonstration import load_demonstration
 from canal.learning import learn_canal
-from diagrams.ik_solver import IkSolver
-from diagrams.lio_arm import TCP_FRAME, make_arm_plant
-from diagrams.start_posture import disk_pose
+from diagrams.ik.solver import IkSolver
+from diagrams.ik.start_posture import disk_pose
+from diagrams.station.lio_arm import TCP_FRAME, make_arm_plant
 from models import MODELS
 
 DT, ORIENTATION_WEIGHT = 0.05, 0.02

@@ -11,10 +11,10 @@ from matplotlib.colors import LinearSegmentedColormap
 from style import BLACK, BLUE, RED, YELLOW, fit, new_figure, save, shipped_canal, solid
 
 from canal.retargeting import retarget
-from diagrams.ik_solver import IkSolver
-from diagrams.lio_arm import TCP_FRAME, make_arm_plant
-from diagrams.reach import reach_report
-from geosacs_drake.plotting import rim_points
+from diagrams.ik.reachability import reach_report
+from diagrams.ik.solver import IkSolver
+from diagrams.station.lio_arm import TCP_FRAME, make_arm_plant
+from geosacs_drake.results.plotting import rim_points
 
 near = shipped_canal("relocation")
 away = np.array([0.18, 0.0, 0.0])

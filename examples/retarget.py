@@ -12,7 +12,7 @@ from scipy.spatial.transform import Rotation
 from canal.demonstration import load_demonstration
 from canal.learning import learn_canal
 from canal.retargeting import retarget, shape_cost
-from geosacs_drake.plotting import plot_canal
+from geosacs_drake.results.plotting import plot_canal
 from models import MODELS
 
 output = sys.argv[1] if len(sys.argv) > 1 else "retarget.png"

@@ -9,7 +9,7 @@ more than 90° away from its predecessor. What looks like a left-handed frame is
 import numpy as np
 from style import BLACK, GREY, TANGENT, X_AXIS, Y_AXIS, arrows, fit, new_figure, save, solid
 
-from canal.learning import build_surface, unit_tangents
+from canal.learning.learn import build_surface, unit_tangents
 from canal.quality import angles
 
 u = np.linspace(0.0, 1.0, 241)

@@ -15,7 +15,7 @@ from mpl_toolkits.mplot3d import proj3d
 from canal.demonstration import load_demonstration
 from canal.learning import learn_canal
 from canal.surface import CanalSurface
-from geosacs_drake.plotting import rim_points
+from geosacs_drake.results.plotting import rim_points
 from models import MODELS
 
 RED, BLUE, GREEN, YELLOW = "#D55E00", "#0072B2", "#009E73", "#E69F00"

@@ -13,7 +13,7 @@ from style import BLUE, GREY, RED, fit, new_figure, save, solid
 from canal.demonstration import Demonstration, load_demonstration
 from canal.editing import with_support_planes
 from canal.learning import learn_canal
-from canal.refinement import SupportPlane
+from canal.support_planes import SupportPlane
 from models import MODELS
 
 askew = []

@@ -25,7 +25,7 @@ from style import (
     solid,
 )
 
-from canal.tour import tour
+from canal.navigation.tour import tour
 from diagrams.scenario import Scenario, load_scenario
 from models import MODELS
 

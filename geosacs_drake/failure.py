@@ -5,8 +5,8 @@ from __future__ import annotations
 from pydrake.systems.framework import Context
 
 from canal.navigation import Leg, NavigationState
-from diagrams.rest import Rest
 from diagrams.shared_autonomy import SharedAutonomy
+from diagrams.station.sleep import Rest
 
 
 def describe_failure(error: BaseException, system: SharedAutonomy, rest: Rest, root: Context) -> str:

@@ -7,7 +7,7 @@ from collections.abc import Callable, Sequence
 from typing import NoReturn
 
 from canal.errors import InputError
-from geosacs_drake.command_line import ExitStatus, end
+from geosacs_drake.process.command_line import ExitStatus, end
 
 PROG = "geosacs"
 

@@ -17,10 +17,10 @@ from canal.learning import learn_canal
 from canal.quality import CanalQuality, canal_quality
 from canal.surface import CanalSurface
 from canal.surface_file import save_canal
-from geosacs_drake.command_line import ExitStatus, end
-from geosacs_drake.interrupts import Interrupts
 from geosacs_drake.learn_options import PROG, LearnOptions, parse
-from geosacs_drake.outputs import Output, check_outputs, say_failures, write_each
+from geosacs_drake.process.command_line import ExitStatus, end
+from geosacs_drake.process.interrupts import Interrupts
+from geosacs_drake.process.outputs import Output, check_outputs, say_failures, write_each
 
 POINTS_UP = math.sin(math.radians(20.0))
 """Height of the gripper's axis from which on it is said; things are gripped from above or from the side."""
@@ -72,12 +72,12 @@ def outputs_of(options: LearnOptions) -> list[Output]:
     if options.html is not None:
         outputs.append(Output("--html", options.html, (".html", ".htm")))
     if options.plot is not None:
-        from geosacs_drake.plotting import frames_path
+        from geosacs_drake.results.plotting import frames_path
 
         outputs.append(Output("--plot", options.plot, PICTURES))
         outputs.append(Output("--plot", frames_path(options.plot), PICTURES))
     if options.reach and (beside := _beside(options)) is not None:
-        from geosacs_drake.reach_plot import reach_path
+        from geosacs_drake.results.reach_plot import reach_path
 
         outputs.append(Output("--reach", reach_path(beside), PICTURES))
     return outputs
@@ -150,7 +150,7 @@ def _writers(
         said.append(f"canal written to {options.output}")
 
     def reach() -> None:
-        from geosacs_drake.reach_plot import lio_reach, plot_reach, reach_path
+        from geosacs_drake.results.reach_plot import lio_reach, plot_reach, reach_path
 
         found = lio_reach(canal)
         said.extend(found.describe())
@@ -159,8 +159,8 @@ def _writers(
             said.append(f"reach drawn to {reach_path(beside)}")
 
     def plot() -> None:
-        from canal.tour import tour
-        from geosacs_drake.plotting import frames_path, plot_canal, plot_frames
+        from canal.navigation.tour import tour
+        from geosacs_drake.results.plotting import frames_path, plot_canal, plot_frames
 
         assert options.plot is not None
         travelled = tour(canal)
@@ -176,7 +176,7 @@ def _writers(
         said.append(f"pictures drawn to {options.plot} and {frames_path(options.plot)}")
 
     def html() -> None:
-        from geosacs_drake.canal_html import write_html
+        from geosacs_drake.results.canal_html import write_html
 
         assert options.html is not None
         write_html(options.html, _page(canal, recorded))
@@ -193,8 +193,8 @@ def _writers(
 
 def _page(canal: CanalSurface, recorded: Sequence[np.ndarray]) -> str:
     """The canal as a page, with a tour of it by a scripted thumb."""
-    from canal.tour import tour
-    from geosacs_drake.canal_html import canal_page
+    from canal.navigation.tour import tour
+    from geosacs_drake.results.canal_html import canal_page
 
     travelled = tour(canal)
     return canal_page(canal, recorded=recorded, path=travelled.position, corrections=travelled.corrections)
@@ -202,7 +202,7 @@ def _page(canal: CanalSurface, recorded: Sequence[np.ndarray]) -> str:
 
 def _view(page: str, port: int) -> None:
     """Show a page on localhost until Ctrl-C."""
-    from geosacs_drake.canal_html import serve
+    from geosacs_drake.results.canal_html import serve
 
     with serve(page, port) as server:
         address = f"http://127.0.0.1:{server.server_address[1]}/"

@@ -13,8 +13,8 @@ from pydantic import Field
 from canal.demonstration import AS_OURS, RecordingFormat
 from canal.learning_options import MEASURED, LearningOptions
 from canal.options import COMMAND_LINE, options
-from canal.refinement import SupportPlane
-from geosacs_drake.command_line import parse_options
+from canal.support_planes import SupportPlane
+from geosacs_drake.process.command_line import parse_options
 
 PROG = "geosacs_drake.learn"
 _OLD_NAMES = {"--support-plane": "--support-planes"}  # singular, since it is given once for each plane

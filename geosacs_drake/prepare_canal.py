@@ -12,15 +12,15 @@ from scipy.spatial.transform import Rotation
 from canal.demonstration import load_demonstration
 from canal.editing import with_support_planes
 from canal.learning import learn_canal
-from canal.refinement import SupportPlane
 from canal.retargeting import retarget
+from canal.support_planes import SupportPlane
 from canal.surface import CanalSurface
 from canal.surface_file import load_canal
-from diagrams.clear_arm import make_lio_solver
 from diagrams.fitted_scene import fit_scene
-from diagrams.leads_to import check_leads_to_things
 from diagrams.scenario import Retarget, Scenario
-from geosacs_drake.options import RunOptions
+from diagrams.scene.leads_to import check_leads_to_things
+from diagrams.station.lio_ik import make_lio_solver
+from geosacs_drake.run_options import RunOptions
 from models import MODELS
 
 

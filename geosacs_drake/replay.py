@@ -19,10 +19,10 @@ from canal.reading import read_npz
 from canal.surface import CanalSurface
 from canal.surface_file import KEYS, canal_arrays, canal_of
 from diagrams.scenario import Scenario
-from diagrams.world import check_world
-from geosacs_drake.options import PEOPLE, RunOptions
+from diagrams.scene.world import check_world
+from geosacs_drake.results.summary import RunResult
+from geosacs_drake.run_options import PEOPLE, RunOptions
 from geosacs_drake.simulate import INTERRUPTED
-from geosacs_drake.summary import RunResult
 
 CANAL = "canal_"
 """Before each key of a canal file that is in a log."""

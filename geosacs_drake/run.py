@@ -10,22 +10,23 @@ from typing import NoReturn
 from pydrake.geometry import Meshcat
 from tqdm import tqdm
 
-from canal.stick_directions import stick_directions
+from canal.navigation.stick_directions import stick_directions
 from diagrams.announcements import Announcement
-from diagrams.joystick_recording import load_recording
-from diagrams.layout import base_pose
-from diagrams.meshcat_joystick import CONTROLS
-from diagrams.meshcat_recording import Recording
-from diagrams.meshcat_server import leave, start_meshcat
+from diagrams.scene.layout import base_pose
 from diagrams.shared_autonomy import build_shared_autonomy
 from geosacs_drake.command_line import ExitStatus, end, parse_options, status_of
 from geosacs_drake.console.again import run_again
+from diagrams.teleop.joystick_recording import load_recording
+from diagrams.teleop.meshcat_joystick import CONTROLS
+from diagrams.view.meshcat_page import leave, start_meshcat
+from diagrams.view.meshcat_recording import Recording
 from geosacs_drake.console.console import Console
 from geosacs_drake.console.mapping_choice import chosen_view
-from geosacs_drake.interrupts import Interrupts, Phase
-from geosacs_drake.options import PEOPLE, RunOptions
+from geosacs_drake.process.command_line import ExitStatus, end, parse_options, status_of
+from geosacs_drake.process.interrupts import Interrupts, Phase
 from geosacs_drake.replay import make_origin
 from geosacs_drake.run_files import finish
+from geosacs_drake.run_options import PEOPLE, RunOptions
 from geosacs_drake.run_task import RunTask, find_task
 from geosacs_drake.simulate import Progress, simulate
 

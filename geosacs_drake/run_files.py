@@ -11,15 +11,15 @@ from typing import Any
 
 from canal.errors import InputError
 from canal.files import write_npz
-from diagrams.cameras import VideoRecorder, film_kind
-from diagrams.meshcat_recording import Recording
 from diagrams.run_log import named_signals
 from diagrams.scenario import Scenario
-from geosacs_drake.command_line import ExitStatus
-from geosacs_drake.options import PEOPLE, RunOptions
-from geosacs_drake.outputs import Output, check_outputs, say_failures, write_each
+from diagrams.view.cameras import VideoRecorder, film_kind
+from diagrams.view.meshcat_recording import Recording
+from geosacs_drake.process.command_line import ExitStatus
+from geosacs_drake.process.outputs import Output, check_outputs, say_failures, write_each
 from geosacs_drake.replay import Origin
-from geosacs_drake.summary import RunResult, describe, summarize, write_summary
+from geosacs_drake.results.summary import RunResult, describe, summarize, write_summary
+from geosacs_drake.run_options import PEOPLE, RunOptions
 from models import MODELS, SCENARIOS
 
 ENDINGS = {"summary": (".json",), "log": (".npz",), "record": (".html", ".htm"), "video": (".gif", ".mp4")}

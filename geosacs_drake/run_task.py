@@ -8,10 +8,10 @@ from dataclasses import dataclass, replace
 
 from canal.surface import CanalSurface
 from diagrams.scenario import Scenario, load_scenario, with_items
-from geosacs_drake.options import RunOptions
 from geosacs_drake.prepare_canal import prepare_task
 from geosacs_drake.replay import Origin, differences, load_origin
 from geosacs_drake.run_files import check_run_files
+from geosacs_drake.run_options import RunOptions
 
 DURATION_S = 900.0
 """Longest simulated time of a run that is not told."""

@@ -12,12 +12,12 @@ import numpy as np
 from pydrake.systems.analysis import Simulator, SimulatorStatus
 from pydrake.systems.framework import Context, EventStatus
 
-from diagrams.rest import rest_of
-from diagrams.scene import RigidItem
+from diagrams.scene.scene import RigidItem
 from diagrams.shared_autonomy import SharedAutonomy
-from geosacs_drake.command_line import one_line
+from diagrams.station.sleep import rest_of
 from geosacs_drake.failure import describe_failure
-from geosacs_drake.summary import RunResult
+from geosacs_drake.process.command_line import one_line
+from geosacs_drake.results.summary import RunResult
 
 INTERRUPTED = "interrupted"
 """The reason of a run that was asked to end."""

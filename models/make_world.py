@@ -16,7 +16,7 @@ SCRIPT = "models/make_world.py"
 
 STEEL = Material(friction=0.4, modulus=1e7, margin=0.004)
 """Sheet metal and drum. With this stiffness and margin a rigid bundle that falls into the drum sinks in by 2-4 mm.
-Cloth has a margin of its own (`diagrams.soft_contact`)."""
+Cloth has a margin of its own (`diagrams.deformable.contact`)."""
 WOOD = Material(friction=0.6, modulus=3e6, margin=0.001)
 WICKER = Material(friction=0.6, modulus=1e6, margin=0.001)
 """Softer, so that what lies in the basket comes to rest with few contact points, which is what a step costs."""

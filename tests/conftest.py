@@ -47,7 +47,7 @@ def page(chromium: Browser) -> Iterator[Page]:
 @pytest.fixture
 def meshcat() -> Meshcat:
     """A Meshcat of the project, on a free port."""
-    from diagrams.meshcat_server import start_meshcat
+    from diagrams.view.meshcat_page import start_meshcat
 
     return start_meshcat(port=0)
 

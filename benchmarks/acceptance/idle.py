@@ -12,13 +12,13 @@ from pydrake.systems.framework import Context
 from benchmarks.acceptance.check import Check, Count, Figures, Job, Worst, at_least, at_most, exactly
 from benchmarks.acceptance.commands import empty_folder
 from benchmarks.canal_quality import RECORDED
-from canal.joystick import JOYSTICK_SIZE, START, STOP
-from diagrams.joystick_recording import JoystickRecording
-from diagrams.lio_drive import ARM
+from canal.navigation.joystick import JOYSTICK_SIZE, START, STOP
 from diagrams.scenario import load_scenario
 from diagrams.shared_autonomy import build_shared_autonomy
-from geosacs_drake.options import RunOptions
+from diagrams.station.lio_drive import ARM
+from diagrams.teleop.joystick_recording import JoystickRecording
 from geosacs_drake.prepare_canal import prepare_canal, prepare_task
+from geosacs_drake.run_options import RunOptions
 from geosacs_drake.simulate import simulate
 from models import SCENARIOS
 

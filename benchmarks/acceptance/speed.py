@@ -14,14 +14,14 @@ from pydrake.systems.analysis import Simulator
 from pydrake.systems.framework import Context, DiagramBuilder
 
 from benchmarks.acceptance.check import Check, Figures, Job, Worst, at_least
-from diagrams.lio_drive import LioDrive
-from diagrams.lio_station import arm_stops, plant_config, set_drives
+from diagrams.deformable.contact import prepare_for_cloth
 from diagrams.scenario import Scenario, load_scenario, with_items
-from diagrams.scene import add_scene
+from diagrams.scene.scene import add_scene
 from diagrams.shared_autonomy import build_shared_autonomy
-from diagrams.soft_contact import prepare_for_cloth
-from geosacs_drake.options import RunOptions
+from diagrams.station.lio_drive import LioDrive
+from diagrams.station.lio_station import arm_stops, plant_config, set_drives
 from geosacs_drake.prepare_canal import prepare_canal
+from geosacs_drake.run_options import RunOptions
 from geosacs_drake.simulate import simulate
 
 TURN_S, BARE_S = 0.5, 0.1

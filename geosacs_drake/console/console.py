@@ -13,7 +13,7 @@ from typing import Any
 from pydrake.geometry import Meshcat
 from pydrake.math import RollPitchYaw
 
-from canal.joystick import JOYSTICK_PERIOD
+from canal.navigation.joystick import JOYSTICK_PERIOD
 from canal.surface import CanalSurface
 from diagrams.announcements import Announcement
 from diagrams.scenario import Scenario

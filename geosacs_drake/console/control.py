@@ -10,9 +10,9 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from canal.joystick import GRIPPER, JOYSTICK_SIZE, REVERSE, START, STOP
-from diagrams.joystick import clean_joystick
-from diagrams.live_joystick import LiveSample
+from canal.navigation.joystick import GRIPPER, JOYSTICK_SIZE, REVERSE, START, STOP
+from diagrams.teleop.joystick_selector import clean_joystick
+from diagrams.teleop.live_joystick import LiveSample
 
 STALE_S = 0.150
 """[s] A stick that nobody has confirmed for so long falls to its centre; a press that is older is not carried out."""

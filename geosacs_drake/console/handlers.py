@@ -9,20 +9,18 @@ import itertools
 import mimetypes
 import time
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any, Protocol
 
 from tornado.web import HTTPError, RequestHandler
 from tornado.websocket import WebSocketClosedError, WebSocketHandler
 
 from geosacs_drake.console.access import Access
-from geosacs_drake.console.link import Link
+from geosacs_drake.console.control import Control
+from geosacs_drake.console.link import Answers, Link
 from geosacs_drake.console.meshcat_feed import meshcat_messages
 from geosacs_drake.console.meshcat_page import meshcat_page
 from geosacs_drake.console.messages import MOST_BYTES, read_message
 from geosacs_drake.console.newest import Newest
-
-if TYPE_CHECKING:
-    from geosacs_drake.console.server import ConsoleServer
 
 PAGE = Path(__file__).parent / "page"
 QUICK_S = 0.1
@@ -30,12 +28,29 @@ QUICK_S = 0.1
 NAMES = itertools.count(1)
 
 
+class Server(Protocol):
+    """What the handlers ask of the server that has them."""
+
+    access: Access
+    control: Control
+    answers: Answers
+    links: dict[str, LinkSocket]
+    open: set[WebSocketHandler]
+    meshcat_address: tuple[str, int]
+
+    def welcome(self, name: str) -> str:
+        """The first words to a page."""
+
+    def refused(self, code: int, why: str) -> str:
+        """What is said to a page whose message is broken."""
+
+
 class _Guarded(RequestHandler):
     """Looks at Host, Origin and token before anything else."""
 
     needs_origin = False
 
-    def initialize(self, server: ConsoleServer) -> None:
+    def initialize(self, server: Server) -> None:
         self.server = server
 
     def prepare(self) -> None:

@@ -9,9 +9,9 @@ import numpy as np
 from pydrake.math import RollPitchYaw, RotationMatrix
 from scipy.spatial.transform import Rotation
 
-from canal.stick_directions import SEATS, View, stick_directions, view_from
+from canal.navigation.stick_directions import SEATS, View, stick_directions, view_from
 from canal.surface import CanalSurface
-from diagrams.cameras import X_GRIPPER_CAMERA
+from diagrams.view.cameras import X_GRIPPER_CAMERA
 
 
 class MappingChoice:

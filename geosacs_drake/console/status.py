@@ -10,8 +10,8 @@ from typing import Any
 
 from pydrake.systems.framework import Context
 
-from canal.joystick import GRIPPER
 from canal.navigation import Leg, NavigationState, leg_end, phase
+from canal.navigation.joystick import GRIPPER
 from canal.surface import CanalSurface
 from diagrams.shared_autonomy import SharedAutonomy
 from geosacs_drake.console.control import Control

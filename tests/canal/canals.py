@@ -8,7 +8,7 @@ from hard_demonstrations import hard_demonstrations
 from canal.demonstration import Demonstration
 from canal.learning import learn_canal
 from canal.learning_options import LearningOptions
-from canal.refinement import SupportPlane
+from canal.support_planes import SupportPlane
 from canal.surface import CanalSurface
 
 

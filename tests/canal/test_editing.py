@@ -7,8 +7,8 @@ from canal.demonstration import Demonstration
 from canal.editing import add_demonstration, cut, join, reverse
 from canal.errors import InputError
 from canal.learning import learn_canal
+from canal.learning.disk_normals import ROOM
 from canal.quality import canal_quality
-from canal.relaxation import ROOM
 from canal.retargeting import retarget
 
 

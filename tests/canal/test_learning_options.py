@@ -14,8 +14,8 @@ from canal.learning import learn_canal
 from canal.learning_options import MEASURED, PAPER, LearningOptions, from_json, to_json
 from canal.options import read_options
 from canal.quality import canal_quality
-from canal.refinement import SupportPlane
 from canal.retargeting import retarget
+from canal.support_planes import SupportPlane
 from canal.surface_file import load_canal, save_canal
 
 PLANE = SupportPlane((0.0, 0.0, 1.0), -0.5)

@@ -7,10 +7,10 @@ import pytest
 
 from canal.demonstration import load_demonstration
 from canal.learning import learn_canal
+from canal.learning.disk_normals import ROOM
 from canal.learning_options import LearningOptions
 from canal.quality import canal_quality, deviations, undershoot
-from canal.refinement import SupportPlane, dips
-from canal.relaxation import ROOM
+from canal.support_planes import SupportPlane, dips
 from models import MODELS
 
 PAIRS = {"shipped": [MODELS / "demonstrations" / f"tables_{k}.npz" for k in (1, 2)]}

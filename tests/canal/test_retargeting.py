@@ -9,8 +9,8 @@ from scipy.spatial.transform import Rotation
 
 from canal.errors import InputError
 from canal.quality import canal_quality
-from canal.refinement import SupportPlane
 from canal.retargeting import retarget, shape_cost
+from canal.support_planes import SupportPlane
 
 
 def moved(canal, disk, shift, turn):

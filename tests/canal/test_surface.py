@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 
 from canal.errors import InputError
 from canal.learning_options import LearningOptions
-from canal.refinement import SupportPlane
+from canal.support_planes import SupportPlane
 from canal.surface_file import load_canal, save_canal
 
 disks = st.floats(0.0, 200.0)

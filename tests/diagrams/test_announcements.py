@@ -12,7 +12,7 @@ from canal.demonstration import Demonstration
 from canal.learning import learn_canal
 from canal.navigation import Ignored, initial_state
 from diagrams.announcements import SHOWN_S, WHY_IGNORED, Announcer, Event, body_in_words
-from diagrams.meshcat_notice import MeshcatNotice
+from diagrams.view.meshcat_notice import MeshcatNotice
 
 
 @pytest.fixture(scope="module")

@@ -10,13 +10,13 @@ from canal.demonstration import Demonstration, load_demonstration
 from canal.errors import InputError
 from canal.learning import learn_canal
 from canal.surface import CanalSurface
-from diagrams.clear_arm import make_lio_solver
 from diagrams.fitted_scene import GRIP_HEIGHT, FittedScene, fit_scene
-from diagrams.layout import draw_layout
-from diagrams.leads_to import check_leads_to_things
-from diagrams.lio_station import LioStation
-from diagrams.open_gripper import gripper_depth, lean, opens_towards
 from diagrams.scenario import load_scenario
+from diagrams.scene.layout import draw_layout
+from diagrams.scene.leads_to import check_leads_to_things
+from diagrams.scene.open_gripper import gripper_depth, lean, opens_towards
+from diagrams.station.lio_ik import make_lio_solver
+from diagrams.station.lio_station import LioStation
 from models import MODELS
 
 TEMPLATE = replace(load_scenario("relocation"), support_planes=[])

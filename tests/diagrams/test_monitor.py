@@ -7,7 +7,7 @@ from pydrake.systems.analysis import Simulator, SimulatorStatus
 from canal.demonstration import Demonstration
 from canal.learning import learn_canal
 from canal.navigation import initial_state
-from diagrams.goals import MarkGoal
+from diagrams.geometry.goals import MarkGoal
 from diagrams.monitor import Monitor, MonitorOptions
 
 MARK = np.array([0.4, 0.5, 0.5])

@@ -6,13 +6,13 @@ from pydrake.systems.analysis import Simulator
 from pydrake.systems.framework import DiagramBuilder
 
 from canal.demonstration import Demonstration
-from canal.joystick import JOYSTICK_PERIOD, in_step
 from canal.learning import learn_canal
 from canal.navigation import Leg, NavigationOptions, NavigationState, disks_per_second, initial_state
-from diagrams.joystick import RecordedJoystick
-from diagrams.joystick_recording import JoystickRecording
+from canal.navigation.joystick import JOYSTICK_PERIOD, in_step
 from diagrams.navigator import CanalNavigator
 from diagrams.scenario import Scenario
+from diagrams.teleop.joystick_recording import JoystickRecording
+from diagrams.teleop.joystick_selector import RecordedJoystick
 
 
 @pytest.fixture(scope="module")

@@ -7,9 +7,9 @@ import pytest
 import yaml
 
 from canal.errors import InputError
-from diagrams.layout import draw_layout, reach_at, yaw_pose
 from diagrams.scenario import load_scenario, shipped_scenarios, with_items
-from diagrams.world import Contact, Region, Room
+from diagrams.scene.layout import draw_layout, reach_at, yaw_pose
+from diagrams.scene.world import Contact, Region, Room
 from models import SCENARIOS
 
 NAMED = [

@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 from geosacs_drake.learn_options import LearnOptions
-from geosacs_drake.options import RunOptions
+from geosacs_drake.run_options import RunOptions
 
 ROOT = Path(__file__).parents[2]
 PAGES = sorted(
@@ -39,4 +39,7 @@ def test_named_options_exist(page):
 
 
 def test_paths_are_found():
-    assert named_paths("see `canal/frames.py` and `diagrams/`, not `a.npz`") == {"canal/frames.py", "diagrams/"}
+    assert named_paths("see `canal/learning/frames.py` and `diagrams/`, not `a.npz`") == {
+        "canal/learning/frames.py",
+        "diagrams/",
+    }

@@ -15,7 +15,7 @@ from waiting import wait_until
 
 from diagrams.shared_autonomy import SharedAutonomy
 from geosacs_drake import run as run_module
-from geosacs_drake.interrupts import SAME_PRESS_S
+from geosacs_drake.process.interrupts import SAME_PRESS_S
 from geosacs_drake.run import main
 
 ROOT = Path(__file__).parents[2]

@@ -12,9 +12,9 @@ from pydrake.systems.analysis import Simulator
 import geosacs_drake.simulate
 from diagrams.scenario import load_scenario
 from diagrams.shared_autonomy import build_shared_autonomy
-from geosacs_drake.options import RunOptions
 from geosacs_drake.prepare_canal import prepare_canal
 from geosacs_drake.run import main
+from geosacs_drake.run_options import RunOptions
 from geosacs_drake.simulate import simulate
 
 DRAKES_WORDS = (

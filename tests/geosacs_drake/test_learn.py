@@ -14,11 +14,11 @@ import models
 from canal.demonstration import load_demonstration
 from canal.learning import learn_canal
 from canal.learning_options import LearningOptions
-from canal.refinement import SupportPlane
+from canal.support_planes import SupportPlane
 from canal.surface_file import load_canal
-from geosacs_drake.canal_html import serve
 from geosacs_drake.learn import main
 from geosacs_drake.learn_options import LearnOptions, parse
+from geosacs_drake.results.canal_html import serve
 
 DEMONSTRATIONS = tuple(f"{models.__path__[0]}/demonstrations/relocation_{k}.npz" for k in (1, 2))
 

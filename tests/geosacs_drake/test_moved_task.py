@@ -4,12 +4,12 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from diagrams.clear_arm import make_lio_solver
-from diagrams.lio_station import START_POSTURE
+from diagrams.ik.start_posture import find_start_posture
 from diagrams.scenario import Retarget, load_scenario
-from diagrams.start_posture import find_start_posture
-from geosacs_drake.options import RunOptions
+from diagrams.station.lio_ik import make_lio_solver
+from diagrams.station.lio_station import START_POSTURE
 from geosacs_drake.prepare_canal import prepare_canal
+from geosacs_drake.run_options import RunOptions
 
 
 @pytest.fixture(scope="module")

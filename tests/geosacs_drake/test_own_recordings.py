@@ -8,12 +8,12 @@ import pytest
 
 from canal.demonstration import load_demonstration
 from canal.learning import learn_canal
-from canal.refinement import dips
+from canal.support_planes import dips
 from canal.surface_file import save_canal
 from diagrams.scenario import load_scenario, shipped_scenarios
-from geosacs_drake.options import RunOptions
 from geosacs_drake.prepare_canal import prepare_canal, prepare_task
 from geosacs_drake.run import main
+from geosacs_drake.run_options import RunOptions
 from models import MODELS
 
 TABLES = [MODELS / "demonstrations" / f"tables_{k}.npz" for k in (1, 2)]

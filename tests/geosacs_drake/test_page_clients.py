@@ -10,11 +10,11 @@ from running import running
 from waiting import wait_until
 from websocket import Client, packed
 
-from diagrams.meshcat_joystick import KEYS
 from diagrams.scenario import load_scenario
 from diagrams.shared_autonomy import build_shared_autonomy
-from geosacs_drake.options import RunOptions
+from diagrams.teleop.meshcat_joystick import KEYS
 from geosacs_drake.prepare_canal import prepare_canal
+from geosacs_drake.run_options import RunOptions
 
 PRESS = [packed({"type": "button", "name": key.label}) for key in KEYS if key.code in ("Enter", "KeyG")]
 
@@ -84,8 +84,8 @@ def test_the_page_takes_commands_only_where_a_person_was_asked_for(meshcat, oper
 
 
 def test_a_description_goes_escaped_into_the_recorded_page(tmp_path):
-    from diagrams.meshcat_recording import Recording
-    from diagrams.meshcat_server import start_meshcat
+    from diagrams.view.meshcat_page import start_meshcat
+    from diagrams.view.meshcat_recording import Recording
 
     Recording(start_meshcat(hidden=True), title="</title><script>x()</script>").save(tmp_path / "p.html")
     page = (tmp_path / "p.html").read_text()

@@ -10,10 +10,10 @@ from canal.demonstration import Demonstration, save_demonstration
 from canal.learning import learn_canal
 from canal.surface_file import save_canal
 from diagrams.scenario import load_scenario
-from geosacs_drake.options import RunOptions
 from geosacs_drake.prepare_canal import prepare_canal
+from geosacs_drake.results.summary import WALL_CLOCK_KEYS
 from geosacs_drake.run import main
-from geosacs_drake.summary import WALL_CLOCK_KEYS
+from geosacs_drake.run_options import RunOptions
 from models import MODELS
 
 SUMMARY_KEYS = {

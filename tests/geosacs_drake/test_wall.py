@@ -3,14 +3,14 @@
 import numpy as np
 import pytest
 
-from canal.joystick import GRIPPER, JOYSTICK_SIZE, REVERSE, START
+from canal.navigation.joystick import GRIPPER, JOYSTICK_SIZE, REVERSE, START
 from diagrams.announcements import Event
-from diagrams.joystick_recording import JoystickRecording
-from diagrams.lio_drive import ARM
 from diagrams.scenario import load_scenario
 from diagrams.shared_autonomy import build_shared_autonomy
-from geosacs_drake.options import RunOptions
+from diagrams.station.lio_drive import ARM
+from diagrams.teleop.joystick_recording import JoystickRecording
 from geosacs_drake.prepare_canal import prepare_canal
+from geosacs_drake.run_options import RunOptions
 from geosacs_drake.simulate import simulate
 from models import SCENARIOS
 

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from canal.joystick import GRIPPER, REVERSE, START, STOP
+from canal.navigation.joystick import GRIPPER, REVERSE, START, STOP
 from geosacs_drake.console.control import STALE_S, Control
 
 

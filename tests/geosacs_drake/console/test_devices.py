@@ -5,7 +5,7 @@ import json
 import pytest
 from waiting import wait_until
 
-from canal.joystick import GRIPPER, REVERSE, START, STOP
+from canal.navigation.joystick import GRIPPER, REVERSE, START, STOP
 from geosacs_drake.console.bindings import BindingFiles
 
 pytestmark = pytest.mark.browser

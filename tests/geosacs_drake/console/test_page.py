@@ -5,7 +5,7 @@ import math
 import pytest
 from waiting import wait_until
 
-from canal.joystick import GRIPPER, REVERSE, START, STOP
+from canal.navigation.joystick import GRIPPER, REVERSE, START, STOP
 
 pytestmark = pytest.mark.browser
 

@@ -1,0 +1,1 @@
+"""Random sticks, canals, scenarios and runs: `python -m benchmarks.fuzz`."""

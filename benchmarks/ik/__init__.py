@@ -1,0 +1,1 @@
+"""Cases and rivals of the inverse kinematics, and its fuzz."""

@@ -1,0 +1,32 @@
+"""The orientation-weighted inverse kinematics (paper V-C): a Newton step as one MathematicalProgram each tick.
+
+`OrientationWeightedIk` is the system, `IkSolver` what it asks. Reachability, the start posture and the pace that the
+joints allow are found with the same solver.
+"""
+
+from diagrams.ik.joint_pace import at_joint_pace, unhurried
+from diagrams.ik.options import IkOptions, IkStatus, KeepClearOptions
+from diagrams.ik.program import StepProgram
+from diagrams.ik.reachability import ReachReport, reach_report
+from diagrams.ik.solver import IkSolver
+from diagrams.ik.start_posture import StartPosture, disk_pose, find_start_posture
+from diagrams.ik.system import IkStatusField, OrientationWeightedIk
+from diagrams.ik.target import wanted_pose
+
+__all__ = [
+    "IkOptions",
+    "IkSolver",
+    "IkStatus",
+    "IkStatusField",
+    "KeepClearOptions",
+    "OrientationWeightedIk",
+    "ReachReport",
+    "StartPosture",
+    "StepProgram",
+    "at_joint_pace",
+    "disk_pose",
+    "find_start_posture",
+    "reach_report",
+    "unhurried",
+    "wanted_pose",
+]

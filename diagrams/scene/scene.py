@@ -1,0 +1,141 @@
+"""The scene of a scenario: robot, things, items and marks in a MultibodyPlant, before it is finalized."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+from pydrake.geometry import Cylinder, SceneGraph
+from pydrake.math import RigidTransform
+from pydrake.multibody.parsing import Parser
+from pydrake.multibody.plant import MultibodyPlant
+from pydrake.multibody.tree import BodyIndex, ModelInstanceIndex, RigidBody
+
+from diagrams.deformable.items import SoftItem, add_soft_item
+from diagrams.deformable.laundry import make_shape
+from diagrams.geometry.bounds import BodyBounds, Extent, extent
+from diagrams.scene.layout import Spot, base_pose, draw_layout, yaw_pose
+from diagrams.scene.world import Item, Robot, Thing, World
+from models import LIO_URDF, MODELS
+
+DROP = 0.001
+"""Items start this far above their surface [m], and settle."""
+MARK_RADIUS = 0.045
+MARK_COLORS = {"apple": (0.83, 0.14, 0.13), "cup": (0.05, 0.55, 0.60), "cube": (0.95, 0.68, 0.18)}
+"""A mark wears the colour of its item."""
+
+
+@dataclass(frozen=True)
+class RigidItem:
+    """An item that is one rigid body.
+
+    It is named by its index: a `RigidBody` in Python keeps its plant alive where the garbage collector cannot see it,
+    and a system that held one would keep itself, its diagram and all of the plant's memory for ever.
+    """
+
+    name: str
+    plant: MultibodyPlant
+    index: BodyIndex
+    extents: list[Extent]
+
+    @property
+    def body(self) -> RigidBody:
+        """The body; not to be kept by what is part of the diagram."""
+        return self.plant.get_body(self.index)
+
+
+@dataclass
+class Scene:
+    """Handles to what was added to the plant."""
+
+    world: World
+    lio: ModelInstanceIndex
+    X_WB: RigidTransform
+    things: dict[str, list[ModelInstanceIndex]] = field(default_factory=dict)
+    """By name; things that share a name are watched as one."""
+    items: list[RigidItem | SoftItem] = field(default_factory=list)
+    """In the order of the world."""
+    marks: list[Spot | None] = field(default_factory=list)
+    rest_heights: list[float] = field(default_factory=list)
+    """Of each item's origin above the surface it stands on [m]."""
+
+    @property
+    def rigid_items(self) -> list[RigidItem]:
+        """Those that are rigid bodies."""
+        return [item for item in self.items if isinstance(item, RigidItem)]
+
+    @property
+    def soft_items(self) -> list[SoftItem]:
+        """Those that are deformable."""
+        return [item for item in self.items if isinstance(item, SoftItem)]
+
+
+def add_lio(plant: MultibodyPlant, robot: Robot) -> tuple[ModelInstanceIndex, RigidTransform]:
+    """Parse the Lio and weld its base; returns its model and X_WB."""
+    X_WB = base_pose(robot)
+    (lio,) = Parser(plant).AddModels(str(LIO_URDF))
+    plant.WeldFrames(plant.world_frame(), plant.GetFrameByName("lio_base", lio), X_WB)
+    return lio, X_WB
+
+
+def add_scene(
+    *, plant: MultibodyPlant, scene_graph: SceneGraph, world: World, seed: int, filmed: bool = False
+) -> Scene:
+    """Add all that a scenario names to a plant that is registered with a scene graph and not yet finalized.
+
+    `filmed`: whether cameras will look at it.
+
+    Raises:
+        InputError: a model does not exist, or the items do not fit where they may lie.
+    """
+    lio, X_WB = add_lio(plant, world.robot)
+    scene = Scene(world, lio, X_WB)
+    for k, thing in enumerate(world.things):
+        scene.things.setdefault(thing.name, []).append(_add_thing(plant, world, thing, k))
+    starts, scene.marks = draw_layout(world, seed)
+    for item, start in zip(world.items, starts, strict=True):
+        height, handle = _add_item(plant, scene_graph, world, item, start, filmed)
+        scene.rest_heights.append(height)
+        scene.items.append(handle)
+    for item, mark in zip(world.items, scene.marks, strict=True):
+        if mark is not None:
+            color = np.array([*MARK_COLORS.get(item.model, (0.3, 0.3, 0.3)), 1.0])
+            for name, radius, rgba in (("edge", MARK_RADIUS, color), ("field", 0.8 * MARK_RADIUS, PAPER)):
+                X = RigidTransform(mark.position + [0, 0, 0.0004 if name == "edge" else 0.0008])
+                disk = Cylinder(radius, 0.0008)
+                plant.RegisterVisualGeometry(plant.world_body(), X, disk, f"mark_{item.name}_{name}", rgba)
+    return scene
+
+
+PAPER = np.array([0.97, 0.96, 0.92, 1.0])
+
+
+def _add_thing(plant: MultibodyPlant, world: World, thing: Thing, k: int) -> ModelInstanceIndex:
+    path = world.resolve(thing.model, MODELS / "world", ".sdf")
+    (model,) = Parser(plant, f"thing{k}").AddModels(str(path))
+    (body,) = plant.GetBodyIndices(model)
+    X = yaw_pose(thing.position, np.deg2rad(thing.yaw_deg))
+    plant.WeldFrames(plant.world_frame(), plant.get_body(body).body_frame(), X)
+    return model
+
+
+def _add_item(
+    plant: MultibodyPlant, scene_graph: SceneGraph, world: World, item: Item, start: Spot, filmed: bool
+) -> tuple[float, RigidItem | SoftItem]:
+    """Add one item where it starts; returns also the height of its origin above what it stands on."""
+    X = yaw_pose(start.position, start.yaw)
+    if item.kind == "soft":
+        shape = make_shape(item.model)
+        height = -float(shape.mesh.vertices[:, 2].min())
+        X.set_translation(start.position + [0, 0, height + DROP])
+        return height, add_soft_item(plant=plant, name=item.name, shape=shape, X_WP=X, filmed=filmed)
+    path = world.resolve(item.model, MODELS / "items", ".sdf")
+    (model,) = Parser(plant, f"item_{item.name}").AddModels(str(path))
+    (index,) = plant.GetBodyIndices(model)
+    body = plant.get_body(index)
+    inspector = scene_graph.model_inspector()
+    extents = [e for g in plant.GetCollisionGeometriesForBody(body) if (e := extent(inspector, g)) is not None]
+    height = -float(BodyBounds([extents])([RigidTransform()])[0, 2])
+    X.set_translation(start.position + [0, 0, height + DROP])
+    plant.SetDefaultFloatingBaseBodyPose(body, X)
+    return height, RigidItem(item.name, plant, index, extents)

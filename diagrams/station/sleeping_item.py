@@ -1,0 +1,159 @@
+"""One piece that can rest: fixed where it lies, still there for what falls on it, and not computed.
+
+A resting rigid piece is locked (`RigidBody.Lock`), which leaves its shape where it is. A resting soft one is disabled
+(`DeformableModel.Disable`), and then Drake no longer lets anything touch it: what is touched in its place is its
+*cast*, a solid of the same tetrahedra, fixed to the world, that takes the piece's shape each time it comes to rest.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+from pydrake.geometry import GeometryId, SceneGraph
+from pydrake.math import RigidTransform
+from pydrake.multibody.plant import MultibodyPlant
+from pydrake.multibody.tree import UniformGravityFieldElement
+from pydrake.systems.framework import Context
+
+from diagrams.deformable.items import SoftItem, drake_mesh, soft_mesh, soft_velocities
+from diagrams.scene.scene import RigidItem
+
+
+class Piece(Protocol):
+    """What rest needs to know of a piece, and do to it. Contexts are the plant's, but for `root`, the diagram's."""
+
+    @property
+    def own(self) -> list[GeometryId]:
+        """Its shapes while it is awake."""
+        ...
+
+    @property
+    def at_rest(self) -> list[GeometryId]:
+        """What is in their place while it rests."""
+        ...
+
+    @property
+    def weight(self) -> float:
+        """[N]."""
+        ...
+
+    def speed(self, context: Context, size: float) -> float:
+        """Of its fastest point [m/s], at most `size` [m] from its middle; infinite where it stands still only for a
+        moment."""
+        ...
+
+    def is_awake(self, context: Context) -> bool:
+        """Whether it is simulated."""
+        ...
+
+    def wake(self, root: Context) -> None:
+        """Simulate it from now on."""
+        ...
+
+    def rest(self, root: Context) -> None:
+        """Fix it where it is."""
+        ...
+
+
+@dataclass(frozen=True)
+class SoftPiece:
+    """A deformable body and its cast."""
+
+    plant: MultibodyPlant
+    scene_graph: SceneGraph
+    item: SoftItem
+
+    @property
+    def own(self) -> list[GeometryId]:
+        """See `Piece`."""
+        return [self.item.geometry_id]
+
+    @property
+    def at_rest(self) -> list[GeometryId]:
+        """See `Piece`."""
+        return [self.item.cast_id]
+
+    @property
+    def weight(self) -> float:
+        """See `Piece`."""
+        return UniformGravityFieldElement.kDefaultStrength * self.item.shape.mass
+
+    def speed(self, context: Context, size: float) -> float:
+        """See `Piece`."""
+        if not self.is_awake(context):
+            return 0.0
+        return float(np.sqrt((soft_velocities(self.plant, context, self.item) ** 2).sum(axis=1).max()))
+
+    def is_awake(self, context: Context) -> bool:
+        """See `Piece`."""
+        return self.plant.deformable_model().is_enabled(self.item.body_id, context)
+
+    def wake(self, root: Context) -> None:
+        """See `Piece`."""
+        self.plant.deformable_model().Enable(self.item.body_id, self.plant.GetMyMutableContextFromRoot(root))
+
+    def rest(self, root: Context) -> None:
+        """See `Piece`."""
+        context = self.plant.GetMyMutableContextFromRoot(root)
+        self.plant.deformable_model().Disable(self.item.body_id, context)
+        cast = drake_mesh(soft_mesh(self.plant, context, self.item), f"{self.item.name}_cast")
+        geometry = self.scene_graph.GetMyMutableContextFromRoot(root)
+        self.scene_graph.ChangeShape(geometry, self.plant.get_source_id(), self.item.cast_id, cast, RigidTransform())
+
+
+@dataclass(frozen=True)
+class RigidPiece:
+    """A rigid body."""
+
+    plant: MultibodyPlant
+    item: RigidItem
+
+    @property
+    def own(self) -> list[GeometryId]:
+        """See `Piece`."""
+        return self.plant.GetCollisionGeometriesForBody(self.item.body)
+
+    @property
+    def at_rest(self) -> list[GeometryId]:
+        """See `Piece`."""
+        return self.own
+
+    @property
+    def weight(self) -> float:
+        """See `Piece`."""
+        return UniformGravityFieldElement.kDefaultStrength * float(self.item.body.default_mass())
+
+    def speed(self, context: Context, size: float) -> float:
+        """See `Piece`."""
+        if not self.is_awake(context):
+            return 0.0
+        V = self.plant.EvalBodySpatialVelocityInWorld(context, self.item.body)
+        speed = float(np.linalg.norm(V.translational()) + np.linalg.norm(V.rotational()) * size)
+        if speed > STILL:
+            return speed
+        A = self.plant.EvalBodySpatialAccelerationInWorld(context, self.item.body)
+        turning = np.linalg.norm(A.translational()) + np.linalg.norm(A.rotational()) * size
+        return float("inf") if turning > UNMOVED else speed
+
+    def is_awake(self, context: Context) -> bool:
+        """See `Piece`."""
+        return not self.item.body.is_locked(context)
+
+    def wake(self, root: Context) -> None:
+        """See `Piece`."""
+        self.item.body.Unlock(self.plant.GetMyMutableContextFromRoot(root))
+
+    def rest(self, root: Context) -> None:
+        """See `Piece`."""
+        self.item.body.Lock(self.plant.GetMyMutableContextFromRoot(root))
+
+
+def make_piece(plant: MultibodyPlant, scene_graph: SceneGraph, item: RigidItem | SoftItem) -> Piece:
+    """As its kind is."""
+    return SoftPiece(plant, scene_graph, item) if isinstance(item, SoftItem) else RigidPiece(plant, item)
+
+
+STILL = 0.003  # [m/s], of the fastest node; settled piles creep at 0.0001
+UNMOVED = 0.05  # [m/s²]: where a rocking bundle turns it has no speed either, but 0.1 and more of this
