@@ -24,11 +24,11 @@ from style import (
 )
 
 from canal.navigation import FIELD_NAMES
-from canal.tour import segments
+from canal.navigation.tour import segments
 from diagrams.scenario import load_scenario, with_items
 from diagrams.shared_autonomy import build_shared_autonomy
-from geosacs_drake.options import RunOptions
 from geosacs_drake.prepare_canal import prepare_task
+from geosacs_drake.run_options import RunOptions
 from geosacs_drake.simulate import simulate
 
 scenario = with_items(load_scenario("laundry-moved"), "rigid")

@@ -11,13 +11,13 @@ from pydrake.systems.sensors import CameraInfo
 from style import BLUE, GREEN, RED, SKY, YELLOW, new_figure, save, shipped_canal
 
 from canal.surface import CanalSurface
-from diagrams.cameras import VIEWS, add_camera, look_at
-from diagrams.ik_solver import IkSolver
-from diagrams.lio_arm import TCP_FRAME, make_arm_plant
-from diagrams.lio_station import START_POSTURE, LioStation
+from diagrams.ik.solver import IkSolver
+from diagrams.ik.start_posture import disk_pose
 from diagrams.scenario import load_scenario, with_items
-from diagrams.start_posture import disk_pose
-from geosacs_drake.plotting import rim_points
+from diagrams.station.lio_arm import TCP_FRAME, make_arm_plant
+from diagrams.station.lio_station import START_POSTURE, LioStation
+from diagrams.view.cameras import VIEWS, add_camera, look_at
+from geosacs_drake.results.plotting import rim_points
 
 DISK, ETA, PHI = 62.0, 0.55, 0.9
 SIZE = (1280, 800)

@@ -45,7 +45,7 @@ def on_page_markdown(markdown: str, **_: object) -> str:
     """Put the table of a summary's figures where a page asks for it."""
     if "<!-- measures -->" not in markdown:
         return markdown
-    from geosacs_drake.measures import MEASURES
+    from geosacs_drake.results.measures import MEASURES
 
     rows = [f"| `{m.key}` | {m.unit} | {_cell(m.definition)} |" for m in MEASURES]
     return markdown.replace("<!-- measures -->", "\n".join(["| key | unit | what it is |\n|---|---|---|", *rows]))
