@@ -16,17 +16,17 @@ from canal.editing import with_support_planes
 from canal.errors import InputError
 from canal.support_planes import SupportPlane
 from canal.surface import CanalSurface
-from diagrams.fitted_table import FittedTable, fit_tables
-from diagrams.ik_solver import IkSolver
-from diagrams.joint_pace import unhurried
-from diagrams.layout import draw_layout, hand_above
-from diagrams.lio_station import START_POSTURE
-from diagrams.open_gripper import gripper_depth, lean, opens_towards, tool_axes
-from diagrams.reach import ReachReport, reach_report
+from diagrams.ik.joint_pace import unhurried
+from diagrams.ik.reachability import ReachReport, reach_report
+from diagrams.ik.solver import IkSolver
+from diagrams.ik.start_posture import find_start_posture
 from diagrams.scenario import Scenario
-from diagrams.start_posture import find_start_posture
-from diagrams.way_down import MOST_LEAN, room_at
-from diagrams.world import Item, Region, Robot, Room, Thing
+from diagrams.scene.fitted_table import FittedTable, fit_tables
+from diagrams.scene.layout import draw_layout, hand_above
+from diagrams.scene.open_gripper import gripper_depth, lean, opens_towards, tool_axes
+from diagrams.scene.way_down import MOST_LEAN, room_at
+from diagrams.scene.world import Item, Region, Robot, Room, Thing
+from diagrams.station.lio_station import START_POSTURE
 
 GRIP_HEIGHT = 0.040
 """Of the TCP above the table when the gripper closes [m], as in the shipped relocation: the pads hold the middle of

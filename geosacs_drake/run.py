@@ -14,8 +14,6 @@ from canal.navigation.stick_directions import stick_directions
 from diagrams.announcements import Announcement
 from diagrams.scene.layout import base_pose
 from diagrams.shared_autonomy import build_shared_autonomy
-from geosacs_drake.command_line import ExitStatus, end, parse_options, status_of
-from geosacs_drake.console.again import run_again
 from diagrams.teleop.joystick_recording import load_recording
 from diagrams.teleop.meshcat_joystick import CONTROLS
 from diagrams.view.meshcat_page import leave, start_meshcat
@@ -25,6 +23,7 @@ from geosacs_drake.console.mapping_choice import chosen_view
 from geosacs_drake.process.command_line import ExitStatus, end, parse_options, status_of
 from geosacs_drake.process.interrupts import Interrupts, Phase
 from geosacs_drake.replay import make_origin
+from geosacs_drake.run_again import run_again
 from geosacs_drake.run_files import finish
 from geosacs_drake.run_options import PEOPLE, RunOptions
 from geosacs_drake.run_task import RunTask, find_task

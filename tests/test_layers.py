@@ -16,7 +16,7 @@ ROOMS = {
     "deformable": {"geometry"},
     "ik": set(),
     "teleop": set(),
-    "operator": {"geometry", "teleop"},
+    "operator": {"geometry", "scene", "teleop"},
     "scene": {"geometry", "deformable", "ik"},
     "station": {"scene", "geometry", "deformable", "ik"},
     "view": {"station", "scene", "geometry"},

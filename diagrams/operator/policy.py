@@ -12,10 +12,10 @@ import numpy as np
 from canal.navigation import Leg, phase
 from canal.navigation.joystick import GRIPPER, JOYSTICK_PERIOD, JOYSTICK_SIZE, REVERSE, START, STOP
 from canal.surface import CanalSurface
-from diagrams.goals import Goal
-from diagrams.operator_options import OperatorOptions
-from diagrams.operator_state import Mode, OperatorState, Sight
-from diagrams.operator_ways import Ways
+from diagrams.geometry.goals import Goal
+from diagrams.operator.options import OperatorOptions
+from diagrams.operator.state import Mode, OperatorState, Sight
+from diagrams.operator.ways import Ways
 
 
 class OperatorPolicy:

@@ -8,7 +8,7 @@ from pydantic import AfterValidator, Field
 
 from canal.errors import InputError
 from canal.options import Angle, Coordinate, Position, options, short
-from diagrams.model_files import check_model
+from diagrams.scene.model_files import check_model
 from models import MODELS
 
 Kind = Literal["soft", "rigid"]

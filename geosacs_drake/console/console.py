@@ -18,12 +18,12 @@ from canal.surface import CanalSurface
 from diagrams.announcements import Announcement
 from diagrams.scenario import Scenario
 from diagrams.shared_autonomy import SharedAutonomy
-from geosacs_drake.console.again import earlier_place
 from geosacs_drake.console.control import Control
 from geosacs_drake.console.link import Answers
 from geosacs_drake.console.mapping_choice import MappingChoice, chosen_view
 from geosacs_drake.console.server import ConsoleServer
 from geosacs_drake.console.status import StatusReporter
+from geosacs_drake.run_again import earlier_place
 
 WAIT_FOR_PAGE_S = 15.0
 """[s] With no page after so long the simulated operator begins."""

@@ -11,16 +11,16 @@ from canal.editing import with_support_planes
 from canal.errors import InputError
 from canal.learning import learn_canal
 from canal.navigation import NavigationOptions, NavigationState
-from canal.refinement import SupportPlane
+from canal.support_planes import SupportPlane
 from canal.surface import CanalSurface
-from diagrams.goals import MarkGoal
-from diagrams.layout import draw_layout, hand_above, in_the_way
-from diagrams.operator_options import OperatorOptions
-from diagrams.operator_policy import OperatorPolicy
-from diagrams.operator_state import Mode, OperatorState, Sight
+from diagrams.geometry.goals import MarkGoal
+from diagrams.operator.options import OperatorOptions
+from diagrams.operator.policy import OperatorPolicy
+from diagrams.operator.state import Mode, OperatorState, Sight
 from diagrams.scenario import Scenario, load_scenario
-from diagrams.way_down import HEIGHTS, room_at
-from diagrams.world import Region, Room
+from diagrams.scene.layout import draw_layout, hand_above, in_the_way
+from diagrams.scene.way_down import HEIGHTS, room_at
+from diagrams.scene.world import Region, Room
 from models import MODELS
 
 

@@ -7,8 +7,8 @@ import math
 import numpy as np
 
 from canal.surface import CanalSurface
-from diagrams.open_gripper import lean, opens_towards
-from diagrams.world import Room
+from diagrams.scene.open_gripper import lean, opens_towards
+from diagrams.scene.world import Room
 
 HEIGHTS = (0.025, 0.05, 0.075)
 """[m] Of the gripper above where it closes, at which its way is looked at: from 0.067 on, the tips of the open fingers

@@ -7,8 +7,8 @@ from collections.abc import Sequence
 import numpy as np
 
 from canal.surface import CanalSurface
-from diagrams.layout import in_the_way
-from diagrams.way_down import room_at
+from diagrams.scene.layout import in_the_way
+from diagrams.scene.way_down import room_at
 
 
 class Ways:
