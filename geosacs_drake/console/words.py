@@ -56,8 +56,8 @@ def doing(state: NavigationState, standing: str, *, person: bool, begun: bool) -
 def _waiting(leg: Leg, closed: bool) -> tuple[str, str]:
     if leg is Leg.HOME_TO_PICK:
         if closed:
-            return "Waiting at pick", "The gripper is closed: Gripper opens it, Reverse goes back."
-        return "Waiting: steer, then grip", "Move over what is to be taken, and press Gripper."
+            return "Waiting at pick", "The gripper is closed: Let go opens it, Reverse goes back."
+        return "Waiting: steer, then grip", "Move over what is to be taken, and press Grip."
     if closed:
-        return "Waiting: steer, then let go", "Move to where it belongs, and press Gripper to let go."
+        return "Waiting: steer, then let go", "Move to where it belongs, and press Let go."
     return "Waiting at place", "The gripper is open: Reverse goes back."

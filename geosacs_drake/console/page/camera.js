@@ -42,8 +42,8 @@ export class Camera extends EventTarget {
     const view = VIEWS[settings.view];
     const eye = settings.view === "seat" ? SEAT_EYES[settings.seat] : view.eye;
     const target = view.target ?? MIDDLE;
-    this.frame.contentWindow?.postMessage(
-      view.follow ? { follow: true } : { eye: this.toWorld(eye), target: this.toWorld(target) }, location.origin);
+    this.frame.contentWindow?.lookFrom?.(
+      view.follow ? { follow: true } : { eye: this.toWorld(eye), target: this.toWorld(target) });
   }
 
   toWorld([x, y, z]) {

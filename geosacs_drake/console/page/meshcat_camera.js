@@ -7,20 +7,32 @@
   const SEEN = { right: [0, -1, 0], up: [-0.9553, 0, 0.2955], back: [-0.2955, 0, -0.9553], eye: [-0.075, 0, 0.085] };
   const WIDE = 70, NORMAL = 40;  // [deg]
   const rotated = ([x, y, z]) => [x, z, -y];  // Meshcat's own axes have y up
-  let told = "", following = false;
+  // What is wanted holds at each picture until somebody takes hold of it: Meshcat puts the camera, too, and anew.
+  let told = "", following = false, wanted = null, held = null;
 
-  window.addEventListener("message", ({ origin, data }) => {
-    if (origin !== location.origin || !window.viewer?.controls) return;
+  // Called by the console's page. It is no message: a part of Meshcat's script sends each one on to itself, for ever.
+  window.lookFrom = (data) => {
+    if (!window.viewer?.controls) return;
     following = Boolean(data.follow);
+    wanted = data.eye ? { eye: rotated(data.eye), target: rotated(data.target) } : null;
     viewer.controls.enabled = !following;
     viewer.camera.fov = following ? WIDE : NORMAL;
-    viewer.render_callback = following ? follow : () => {};
-    if (data.eye) {
-      viewer.set_property(["Cameras", "default", "rotated", "<object>"], "position", rotated(data.eye));
-      viewer.handle_command({ type: "set_target", value: rotated(data.target) });
-    }
+    viewer.render_callback = () => { following ? follow() : put(); };
     viewer.set_dirty();
-  });
+  };
+
+  function put() {
+    const { camera, controls } = viewer;
+    if (held !== controls) {
+      held = controls;
+      controls.addEventListener("start", () => { wanted = null; });
+    }
+    if (!wanted) return;
+    camera.position.set(...wanted.eye);
+    controls.target.set(...wanted.target);
+    controls.update();
+    camera.updateMatrixWorld(true);
+  }
 
   function follow() {
     const { Matrix4, Vector3 } = MeshCat.THREE;
