@@ -14,21 +14,19 @@ from pydrake.systems.analysis import Simulator
 from pydrake.systems.framework import Context, DiagramBuilder
 
 from benchmarks.acceptance.check import Check, Figures, Job, Worst, at_least
+from canal.navigation.joystick import in_step
 from diagrams.deformable.contact import prepare_for_cloth
 from diagrams.scenario import Scenario, load_scenario, with_items
 from diagrams.scene.scene import add_scene
 from diagrams.shared_autonomy import build_shared_autonomy
-from diagrams.station.lio_drive import LioDrive
-from diagrams.station.lio_station import arm_stops, plant_config, set_drives
+from diagrams.station.lio_station import make_drive, plant_config, set_drives
 from geosacs_drake.prepare_canal import prepare_canal
 from geosacs_drake.run_options import RunOptions
 from geosacs_drake.simulate import simulate
 
 TURN_S, BARE_S = 0.5, 0.1
-NOVEMBER = {"rigid": 1.0, "soft": 1.0, "relocation": 1.0}
-"""The ratios of the commit before issue 12, by this very measurement."""
-KEPT = 0.95
-"""Share of them that is kept."""
+LEAST = 0.95
+"""Times bare Drake: what our systems cost is to be won back, but for a twentieth, by letting sleep what lies still."""
 
 
 def bare_scene(scenario: Scenario, q0: np.ndarray) -> Simulator:
@@ -43,7 +41,9 @@ def bare_scene(scenario: Scenario, q0: np.ndarray) -> Simulator:
         machine = scene.things.get("machine", [])
         prepare_for_cloth(plant=plant, scene_graph=scene_graph, robot=scene.lio, fallen_into=machine)
     plant.Finalize()
-    plant.SetDefaultPositions(scene.lio, LioDrive(q0, arm_stops(plant, scene.lio)).start_positions())
+    plant.SetDefaultPositions(
+        scene.lio, make_drive(plant, q0, in_step(1.0 / scenario.control_rate_hz)).start_positions()
+    )
     simulator = Simulator(builder.Build())
     context = plant.GetMyContextFromRoot(simulator.get_mutable_context())
     port = plant.get_desired_state_input_port(scene.lio)
@@ -96,7 +96,7 @@ def checks() -> list[Check]:
             f"speed, {name}",
             "5, 12 (kept)",
             [Job(ratio, (*run, 70.0), 0.8)],
-            (Worst("times bare Drake", "ratio", at_least(round(KEPT * NOVEMBER[name], 3))),),
+            (Worst("times bare Drake", "ratio", at_least(LEAST)),),
             alone=True,
         )
         for name, run in runs.items()

@@ -73,15 +73,7 @@ class LioStation(Diagram):
             machine = self.scene.things.get("machine", [])
             prepare_for_cloth(plant=plant, scene_graph=scene_graph, robot=lio, fallen_into=machine)
         plant.Finalize()
-        stops = arm_stops(plant)
-        drive = LioDrive(
-            checked_posture(q0, stops),
-            period=in_step(1.0 / world.control_rate_hz),
-            time_step=plant.time_step(),
-            stops=stops,
-            speeds=arm_speeds(plant),
-            friction=np.array([joint.default_damping() for joint in arm_joints(plant)]),
-        )
+        drive = make_drive(plant, q0, period=in_step(1.0 / world.control_rate_hz))
         builder.AddNamedSystem("lio_drive", drive)
         plant.SetDefaultPositions(lio, drive.start_positions())
 
@@ -163,6 +155,28 @@ def set_drives(plant: MultibodyPlant, lio: ModelInstanceIndex) -> None:
     grip = plant.GetJointActuatorByName("lio_finger_left", lio)
     grip.set_controller_gains(PdControllerGains(p=GRIP_STIFFNESS, d=GRIP_DAMPING))
     grip.set_effort_limit(GRIP_EFFORT)
+
+
+def make_drive(plant: MultibodyPlant, q0: np.ndarray, period: float) -> LioDrive:
+    """The drives of the arm and the gripper of a finalized plant.
+
+    Args:
+        plant: with the Lio in it.
+        q0: where they hold the arm at first, [rad]. Shape (6,).
+        period: of what they are told, [s].
+
+    Raises:
+        InputError: `q0` is beyond a joint's stop.
+    """
+    stops = arm_stops(plant)
+    return LioDrive(
+        checked_posture(q0, stops),
+        period=period,
+        time_step=plant.time_step(),
+        stops=stops,
+        speeds=arm_speeds(plant),
+        friction=np.array([joint.default_damping() for joint in arm_joints(plant)]),
+    )
 
 
 def arm_stops(plant: MultibodyPlant) -> tuple[np.ndarray, np.ndarray]:
