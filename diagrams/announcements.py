@@ -66,7 +66,12 @@ def body_in_words(name: str) -> str:
 
 
 def changes(before: NavigationState, now: NavigationState) -> list[tuple[Event, str]]:
-    """What is to be told after a step from one navigation state to another, but for what presses."""
+    """What is to be told after a step from one navigation state to another, but for what presses.
+
+    Args:
+        before: the step.
+        now: after it.
+    """
     found = []
     if before.alarm and not now.alarm:
         found.append((Event.FREE, "It does not press any more, and goes on as told."))
@@ -142,7 +147,13 @@ class Announcer(LeafSystem):
 
     @staticmethod
     def AddToBuilder(*, builder: DiagramBuilder, name: str = "announcer", **kwargs) -> Announcer:
-        """Add an announcer to `builder`; `kwargs` as for the constructor."""
+        """Add an announcer to `builder`; `kwargs` as for the constructor.
+
+        Args:
+            builder: of the diagram that it is added to.
+            name: of the system.
+            **kwargs: as for the constructor.
+        """
         return builder.AddNamedSystem(name, Announcer(**kwargs))
 
     def _look(self, context: Context, discrete: DiscreteValues) -> None:

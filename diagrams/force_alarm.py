@@ -39,7 +39,15 @@ class ForceAlarm(LeafSystem):
     def AddToBuilder(
         *, builder: DiagramBuilder, contact_pairs: int, limit_n: float, period: float, name: str = "force_alarm"
     ) -> ForceAlarm:
-        """Add an alarm to `builder`; arguments as for the constructor."""
+        """Add an alarm to `builder`; arguments as for the constructor.
+
+        Args:
+            builder: of the diagram that it is added to.
+            contact_pairs: how many are watched.
+            limit_n: force above which it rises, [N].
+            period: between updates, [s].
+            name: of the system.
+        """
         return builder.AddNamedSystem(name, ForceAlarm(contact_pairs=contact_pairs, limit_n=limit_n, period=period))
 
     def _force(self, context: Context) -> float:

@@ -63,7 +63,13 @@ class Monitor(LeafSystem):
 
     @staticmethod
     def AddToBuilder(*, builder: DiagramBuilder, name: str = "monitor", **kwargs) -> "Monitor":
-        """Add a monitor to `builder`; `kwargs` as for the constructor."""
+        """Add a monitor to `builder`; `kwargs` as for the constructor.
+
+        Args:
+            builder: of the diagram that it is added to.
+            name: of the system.
+            **kwargs: as for the constructor.
+        """
         return builder.AddNamedSystem(name, Monitor(**kwargs))
 
     def _judge(self, context: Context, discrete: DiscreteValues) -> EventStatus:

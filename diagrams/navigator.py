@@ -75,7 +75,15 @@ class CanalNavigator(LeafSystem):
         period: float = 0.01,
         name: str = "canal_navigator",
     ) -> CanalNavigator:
-        """Add a navigator of `canal` to `builder`."""
+        """Add a navigator of `canal` to `builder`.
+
+        Args:
+            builder: of the diagram that it is added to.
+            canal: that is travelled.
+            options: None for the defaults.
+            period: between updates, [s].
+            name: of the system.
+        """
         return builder.AddNamedSystem(name, CanalNavigator(canal, options, period))
 
     def state(self, context: Context) -> NavigationState:

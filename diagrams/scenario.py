@@ -98,7 +98,12 @@ def load_scenario(name: str | Path) -> Scenario:
 
 
 def with_items(scenario: Scenario, kind: Kind) -> Scenario:
-    """Make all clothes soft, or rigid (the items of a relocation are rigid, always)."""
+    """Make all clothes soft, or rigid (the items of a relocation are rigid, always).
+
+    Args:
+        scenario: changed in place.
+        kind: soft or rigid.
+    """
     if scenario.task == "laundry":
         for item in scenario.items:
             item.kind = kind

@@ -22,12 +22,12 @@ learning, navigation, ik = LearningOptions(), NavigationOptions(), IkOptions()
 b = math.exp(learning.alpha * learning.beta)
 NAVIGATION, LEARNING = "canal.navigation.options.NavigationOptions", "canal.learning_options.LearningOptions"
 ROWS = (
-    ("ε", EPSILON, "canal.frames.EPSILON", "below it two directions are taken for one"),
+    ("ε", EPSILON, "canal.learning.frames.EPSILON", "below it two directions are taken for one"),
     ("λ", navigation.decay_lambda, f"{NAVIGATION}.decay_lambda", "the paper's decay of a ratio, per disk"),
     ("w_p", ik.position_weight, "diagrams.ik.options.IkOptions.position_weight", "weight of position"),
     ("α", learning.alpha, f"{LEARNING}.alpha", "how fast spread lowers the weight of orientation"),
     ("β", learning.beta, f"{LEARNING}.beta", "the spread at which that weight is 1"),
-    ("b", f"{b:.1f}", "canal.orientation.orientation_weight", "largest weight of orientation, exp(α β)"),
+    ("b", f"{b:.1f}", "canal.learning.orientation.orientation_weight", "largest weight of orientation, exp(α β)"),
     ("δ", navigation.delta, f"{NAVIGATION}.delta", "sensitivity of the stick: full stick is 20/δ m/s"),
     ("h", f"{100 * learning.step:g} %", f"{LEARNING}.step", "distance of the splines' knots"),
 )

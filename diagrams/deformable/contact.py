@@ -61,6 +61,15 @@ def prepare_for_cloth(
 
     Contact is foreseen at the models that cloth falls into, and not elsewhere, since that takes twice as many points.
     Whether a shape is compliant towards rigid ones stays as it is. Shapes without a thickness (meshes) stay too.
+
+    Args:
+        plant: before it is finalized.
+        scene_graph: that the plant is registered with.
+        robot: the Lio's model.
+        fallen_into: models at which contact is foreseen.
+        surroundings: pressure gradient of the other shapes, [Pa/m].
+        pads: pressure gradient of the robot's shapes, [Pa/m].
+        margin: at which contact is foreseen, [m].
     """
     inspector = scene_graph.model_inspector()
     links, deep = (set(collision_shapes(plant, models)) for models in ([robot], fallen_into))
@@ -95,7 +104,12 @@ def hull_of_box(size: np.ndarray) -> Convex:
 
 
 def half_thickness(inspector: SceneGraphInspector, geometry: GeometryId) -> float:
-    """Depth of the middle of a convex shape below its surface [m]; infinite for a mesh, which has none."""
+    """Depth of the middle of a convex shape below its surface [m]; infinite for a mesh, which has none.
+
+    Args:
+        inspector: of the scene graph.
+        geometry: one that has a proximity role.
+    """
     shape = inspector.GetShape(geometry)
     if isinstance(shape, Box):
         return float(min(shape.size())) / 2.0

@@ -95,6 +95,14 @@ def add_soft_item(
 
     Drake's own Meshcat drawing of the coarse mesh is hidden; `soft_view` draws the fine surface. Cameras see
     it too where a piece is `filmed` (that takes a second to prepare), else the solid in its mean colour.
+
+    Args:
+        plant: before it is finalized.
+        name: of the system.
+        shape: the piece at rest.
+        X_WP: where it lies.
+        material: None for the piece's own.
+        filmed: whether cameras will look at it.
     """
     material = material or SoftMaterial()
     config = DeformableBodyConfig()
@@ -139,22 +147,45 @@ CAST_MODULUS = 1e6
 
 
 def drake_mesh(mesh: TetMesh, name: str) -> Mesh:
-    """A solid of tetrahedra as Drake takes it, without a file."""
+    """A solid of tetrahedra as Drake takes it, without a file.
+
+    Args:
+        mesh: the solid.
+        name: of the system.
+    """
     return Mesh(InMemoryMesh(mesh_file=MemoryFile(mesh.to_vtk(), ".vtk", f"{name}.vtk")))
 
 
 def soft_positions(plant: MultibodyPlant, context: Context, item: SoftItem) -> np.ndarray:
-    """Node positions p_WN in [m], shape (N, 3)."""
+    """Node positions p_WN in [m], shape (N, 3).
+
+    Args:
+        plant: finalized.
+        context: of the plant.
+        item: one of the plant's.
+    """
     return plant.deformable_model().GetPositions(context, item.body_id).T
 
 
 def soft_mesh(plant: MultibodyPlant, context: Context, item: SoftItem) -> TetMesh:
-    """The tetrahedra as they lie now, in W [m]."""
+    """The tetrahedra as they lie now, in W [m].
+
+    Args:
+        plant: finalized.
+        context: of the plant.
+        item: one of the plant's.
+    """
     return TetMesh(soft_positions(plant, context, item), item.shape.mesh.tetrahedra)
 
 
 def soft_velocities(plant: MultibodyPlant, context: Context, item: SoftItem) -> np.ndarray:
-    """Node velocities v_WN in [m/s], shape (N, 3)."""
+    """Node velocities v_WN in [m/s], shape (N, 3).
+
+    Args:
+        plant: finalized.
+        context: of the plant.
+        item: one of the plant's.
+    """
     return plant.deformable_model().GetVelocities(context, item.body_id).T
 
 

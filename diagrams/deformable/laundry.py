@@ -49,10 +49,13 @@ def make_shape(kind: str, color: Rgb | None = None, *, segments: int = 0) -> Sof
 
     `segments` of the tube, twelve tetrahedra each, are as many as each kind needs unless given (a study of elements).
 
-    Raises
-    ------
-    InputError
-        For a kind that does not exist.
+    Raises:
+        InputError: a kind that does not exist.
+
+    Args:
+        kind: `sock`, `tshirt` or `towel`.
+        color: None for its own.
+        segments: of the tube; None for the kind's own.
     """
     if kind not in SOFT_KINDS:
         raise InputError(f"soft item kind {kind!r} does not exist; use one of {', '.join(SOFT_KINDS)}")

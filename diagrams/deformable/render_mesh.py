@@ -20,6 +20,10 @@ def write_render_mesh(shape: SoftShape, path: Path) -> None:
     """Write the surface of a piece at rest, in its frame, as Wavefront OBJ with normals and colours.
 
     Where the surface stands out of the coarse solid, it is drawn in.
+
+    Args:
+        shape: the piece at rest.
+        path: of the OBJ file.
     """
     surface, triangles = shape.surface, shape.surface.triangles
     points = _drawn_in(shape.mesh, surface.positions(shape.mesh.vertices))

@@ -92,6 +92,10 @@ def embed(mesh: TetMesh, points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 
     A point inside the solid gets the tetrahedron that contains it; one outside gets the tetrahedron in which its most
     negative coordinate is least so, and is then extrapolated.
+
+    Args:
+        mesh: the solid.
+        points: [m]. Shape (n, 3).
     """
     origin = mesh.vertices[mesh.tetrahedra[:, 0]]
     edges = mesh.vertices[mesh.tetrahedra[:, 1:]] - origin[:, None, :]  # (M, 3, 3), rows are edges
@@ -127,7 +131,15 @@ class Tube:
         half_width: Callable[[np.ndarray], np.ndarray],
         half_height: Callable[[np.ndarray], np.ndarray],
     ) -> Tube:
-        """Integrate a heading [rad] along `length` [m] from `start` (3,); functions of s in [0, 1]."""
+        """Integrate a heading [rad] along `length` [m] from `start` (3,); functions of s in [0, 1].
+
+        Args:
+            start: of the axis, [m]. Shape (3,).
+            length: of the axis, [m].
+            heading: direction at s, [rad].
+            half_width: at s, [m].
+            half_height: at s, [m].
+        """
         s = np.linspace(0.0, 1.0, 65)
         angle = heading(s)
         step = np.stack([np.cos(angle), np.sin(angle), np.zeros_like(s)], axis=1) * length / (len(s) - 1)
@@ -136,7 +148,13 @@ class Tube:
         return Tube(axis, half_width(s) * np.ones_like(s), half_height(s) * np.ones_like(s))
 
     def at(self, s: np.ndarray, side: np.ndarray, up: np.ndarray) -> np.ndarray:
-        """Points at axis parameter s, `side` and `up` in units of the half axes; arrays of one shape (...)."""
+        """Points at axis parameter s, `side` and `up` in units of the half axes; arrays of one shape (...).
+
+        Args:
+            s: along the axis, in [0, 1].
+            side: across, in half widths.
+            up: upwards, in half heights.
+        """
         s = np.asarray(s, dtype=float)
         grid = np.linspace(0.0, 1.0, len(self.axis))
         tangents = np.gradient(self.axis, axis=0)
@@ -162,7 +180,12 @@ class TetBuilder:
         self._tetrahedra: list[list[int]] = []
 
     def add_tube(self, tube: Tube, segments: int) -> list[list[int]]:
-        """Fill a tube; returns the sections, each as [axis node, four corners counter-clockwise seen from its end]."""
+        """Fill a tube; returns the sections, each as [axis node, four corners counter-clockwise seen from its end].
+
+        Args:
+            tube: its axis and half axes.
+            segments: how many pieces the shape is made of.
+        """
         sections = [self._section(tube, i / segments) for i in range(segments + 1)]
         self._join(sections)
         return sections
@@ -172,6 +195,13 @@ class TetBuilder:
 
         A block of fourteen tetrahedra around one new node joins that face to the branch's first section; the sections
         are at the tube's parameters `starts_at`.
+
+        Args:
+            low: a section, as `add_tube` gives it.
+            high: the next one.
+            side: which of the faces between them, 0 to 3.
+            tube: of the branch.
+            starts_at: parameters of the branch's sections.
         """
         j, k = 1 + side, 1 + (side + 1) % 4
         root = [low[j], high[j], high[k], low[k]]

@@ -78,7 +78,16 @@ class SoftView(LeafSystem):
         recording: bool = False,
         path: str = "soft",
     ) -> SoftView:
-        """Add a view of `items`, connected to the scene graph's query port."""
+        """Add a view of `items`, connected to the scene graph's query port.
+
+        Args:
+            builder: of the diagram that it is added to.
+            scene_graph: that the plant is registered with.
+            items: that are shown.
+            meshcat: that shows it.
+            recording: whether it is a recording, which keeps every picture.
+            path: in Meshcat.
+        """
         view = builder.AddNamedSystem(
             "soft_view", SoftView(items=items, meshcat=meshcat, recording=recording, path=path)
         )

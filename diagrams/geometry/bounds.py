@@ -31,7 +31,12 @@ class Extent:
 
 
 def extent(inspector: SceneGraphInspector, geometry: GeometryId) -> Extent | None:
-    """The extent of a geometry that has a proximity role; None for a shape without bounds, such as a half-space."""
+    """The extent of a geometry that has a proximity role; None for a shape without bounds, such as a half-space.
+
+    Args:
+        inspector: of the scene graph.
+        geometry: one that has a proximity role.
+    """
     shape, X = inspector.GetShape(geometry), inspector.GetPoseInFrame(geometry)
     points, swell = np.zeros((1, 3)), np.zeros((3, 3))
     if isinstance(shape, Sphere):

@@ -11,7 +11,12 @@ from pydrake.multibody.tree import ModelInstanceIndex
 
 
 def collision_shapes(plant: MultibodyPlant, models: Iterable[ModelInstanceIndex]) -> list[GeometryId]:
-    """Shapes that touch, of all bodies of some models."""
+    """Shapes that touch, of all bodies of some models.
+
+    Args:
+        plant: finalized or not.
+        models: instances.
+    """
     bodies = [plant.get_body(index) for model in models for index in plant.GetBodyIndices(model)]
     return [shape for body in bodies for shape in plant.GetCollisionGeometriesForBody(body)]
 

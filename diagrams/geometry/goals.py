@@ -23,7 +23,12 @@ class Goal(Protocol):
         ...
 
     def placed(self, pose: np.ndarray, bounds: np.ndarray) -> bool:
-        """Whether a thing with this pose (7,) and these bounds (6,) is where it belongs; rest is judged elsewhere."""
+        """Whether a thing with this pose (7,) and these bounds (6,) is where it belongs; rest is judged elsewhere.
+
+        Args:
+            pose: position [m] and quaternion (w, x, y, z) in W. Shape (7,).
+            bounds: least corner, then largest, in W [m]. Shape (6,).
+        """
         ...
 
 
@@ -57,7 +62,12 @@ class DrumGoal:
         return False
 
     def placed(self, pose: np.ndarray, bounds: np.ndarray) -> bool:
-        """The bounds lie behind the door's plane, and their middle in the cylinder of the drum."""
+        """The bounds lie behind the door's plane, and their middle in the cylinder of the drum.
+
+        Args:
+            pose: position [m] and quaternion (w, x, y, z) in W. Shape (7,).
+            bounds: least corner, then largest, in W [m]. Shape (6,).
+        """
         p, n = self.p_WD.tolist(), self.inward.tolist()
         low = [b - o for b, o in zip(bounds[:3].tolist(), p, strict=True)]
         high = [b - o for b, o in zip(bounds[3:].tolist(), p, strict=True)]
@@ -89,7 +99,12 @@ class MarkGoal:
         return True
 
     def placed(self, pose: np.ndarray, bounds: np.ndarray) -> bool:
-        """Within the tolerances of the mark, upright where asked."""
+        """Within the tolerances of the mark, upright where asked.
+
+        Args:
+            pose: position [m] and quaternion (w, x, y, z) in W. Shape (7,).
+            bounds: least corner, then largest, in W [m]. Shape (6,).
+        """
         error = pose[:3] - self.position
         w, x, y, _z = pose[3:]
         # z component of the body's z axis in W: 1 - 2 (x² + y²), for a unit quaternion.

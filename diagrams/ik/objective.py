@@ -39,7 +39,14 @@ class PoseObjective:
         self._root_p = math.sqrt(position_weight)
 
     def set_target(self, p: np.ndarray, R: np.ndarray, weight: float, q_prev: np.ndarray) -> None:
-        """Wanted position p (3,) [m] and rotation R (3, 3) in B, weight of orientation w_o ≥ 0, last posture (n,)."""
+        """Wanted position p (3,) [m] and rotation R (3, 3) in B, weight of orientation w_o ≥ 0, last posture (n,).
+
+        Args:
+            p: in B, [m]. Shape (3,).
+            R: in B. Shape (3, 3).
+            weight: w_o ≥ 0 of orientation.
+            q_prev: the last posture, [rad]. Shape (n,).
+        """
         self._target_transposed = R.T
         self._px, self._py, self._pz = p.tolist()
         self._weight, self._root_o = weight, math.sqrt(weight)

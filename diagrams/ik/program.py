@@ -82,7 +82,13 @@ class StepProgram:
         return self._program
 
     def begin_tick(self, q_prev: np.ndarray, lower: np.ndarray, upper: np.ndarray) -> None:
-        """Set the last posture, and the tick's least and largest posture, each (n,); look at what a user has added."""
+        """Set the last posture, and the tick's least and largest posture, each (n,); look at what a user has added.
+
+        Args:
+            q_prev: the last posture, [rad]. Shape (n,).
+            lower: least posture of the tick. Shape (n,).
+            upper: largest one. Shape (n,).
+        """
         self._q_prev, self._lower, self._upper = q_prev, lower, upper
         if not self._opened:
             return

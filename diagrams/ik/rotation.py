@@ -39,7 +39,12 @@ def rotation_log(rotation: list[list[float]]) -> Vector:
 
 
 def inverse_left_jacobian(phi: Vector, scale: float = 1.0) -> Matrix:
-    """`scale` times J_l⁻¹(φ), as nested tuples; finite up to |φ| = π."""
+    """`scale` times J_l⁻¹(φ), as nested tuples; finite up to |φ| = π.
+
+    Args:
+        phi: φ, a rotation vector, [rad].
+        scale: any.
+    """
     x, y, z = phi
     t = x * x + y * y + z * z
     if t < _SERIES_BELOW:

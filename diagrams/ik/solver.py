@@ -201,6 +201,10 @@ class IkSolver:
         """Least and largest posture (n,) that a tick of dt [s] from q_prev (n,) may end in.
 
         Position limits hold unless the start lies outside them; then the joint comes back as fast as its speed allows.
+
+        Args:
+            q_prev: the last posture, [rad]. Shape (n,).
+            dt: duration of the tick, [s].
         """
         reach = self.v_max * dt
         below, above = q_prev - reach, q_prev + reach

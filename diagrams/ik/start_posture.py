@@ -91,6 +91,12 @@ def find_start_posture(
     First counts how much of the directrix is followed, then how much of the rims, then whether limits are more than
     0.1 rad away; among equals the branch nearest to `preferred`, shape (n,), else the one furthest from limits.
 
+    Args:
+        solver: of the arm.
+        canal: in the robot's base frame.
+        preferred: posture to be near to, [rad]. Shape (n,).
+        seed: of the postures that are tried.
+
     Raises:
         InputError: no posture comes near the canal's home.
     """
@@ -124,6 +130,12 @@ def follow(solver: IkSolver, canal: CanalSurface, q_home: np.ndarray, *, rim: bo
     """Walk the directrix from home to both ends, disk by disk, at the run's speed and weights.
 
     Without `rim` the share of the rims is not counted, and is NaN.
+
+    Args:
+        solver: of the arm.
+        canal: in the robot's base frame.
+        q_home: posture at home, [rad]. Shape (n,).
+        rim: whether rims are looked at, too.
     """
     n_disks, home = canal.n_disks, canal.home_disk
     dt = canal.moving_time_s / (n_disks - 1)
@@ -154,7 +166,14 @@ def follow(solver: IkSolver, canal: CanalSurface, q_home: np.ndarray, *, rim: bo
 
 
 def disk_pose(canal: CanalSurface, disk: float, eta: float = 0.0, phi: float = 0.0) -> np.ndarray:
-    """Pose vector (7,) of a point of the canal, with the disk's mean orientation."""
+    """Pose vector (7,) of a point of the canal, with the disk's mean orientation.
+
+    Args:
+        canal: in the robot's base frame.
+        disk: continuous index.
+        eta: ratio η in [0, 1].
+        phi: φ, [rad].
+    """
     return np.concatenate((canal.point(disk, eta, phi), canal.orientation(disk)))
 
 

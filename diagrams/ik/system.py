@@ -74,7 +74,12 @@ class OrientationWeightedIk(LeafSystem):
         return self._solver
 
     def set_posture(self, context: Context, q: np.ndarray) -> None:
-        """Start from the posture q, shape (n,), at rest."""
+        """Start from the posture q, shape (n,), at rest.
+
+        Args:
+            context: of the system.
+            q: [rad]. Shape (n,).
+        """
         context.SetDiscreteState(self._command, np.concatenate((q, np.zeros(self._solver.n))))
 
     def _tick(self, context: Context, updates: DiscreteValues) -> None:
@@ -128,6 +133,19 @@ class OrientationWeightedIk(LeafSystem):
 
         `plant` is the arm alone, finalized: the solver's own copy for kinematics, never the one that is simulated;
         `diagram` holds it with its SceneGraph when the options ask to keep clear.
+
+        Args:
+            builder: of the diagram that it is added to.
+            plant: the arm alone, finalized.
+            tcp_frame: T, of the plant.
+            q_start: [rad]. Shape (n,).
+            options: None for the defaults.
+            base_frame: B; None for the world's.
+            X_BT_desired: port that is connected; None: not yet.
+            orientation_weight: likewise.
+            period: between updates, [s].
+            diagram: holds the plant with its SceneGraph.
+            name: of the system.
         """
         solver = IkSolver(plant, tcp_frame, options, base_frame, diagram)
         system = OrientationWeightedIk(solver, q_start=q_start, period=period)

@@ -14,7 +14,7 @@ from canal.navigation.joystick import GRIPPER, JOYSTICK_PERIOD, JOYSTICK_SIZE, R
 from canal.surface import CanalSurface
 from diagrams.geometry.goals import Goal
 from diagrams.operator.options import OperatorOptions
-from diagrams.operator.state import Mode, OperatorState, Sight
+from diagrams.operator.state import EPSILON, HAND, NEAR_GOAL, Mode, OperatorState, Sight
 from diagrams.operator.ways import Ways
 
 
@@ -32,9 +32,7 @@ class OperatorPolicy:
         seed: int,
     ) -> None:
         """A person who loads by `canal`; `stick_speed` [m/s] is what full stick moves, `p_BG` (n, 3) the goals in B."""
-        self.canal = canal
-        self.goals = goals
-        self.options = options
+        self.canal, self.goals, self.options = canal, goals, options
         self.stick_speed = stick_speed
         self.p_BG = p_BG
         self.seed = seed
@@ -42,11 +40,15 @@ class OperatorPolicy:
 
     def initial(self) -> np.ndarray:
         """State vector before anything has happened."""
-        n = len(self.goals)
-        return OperatorState().pack(np.zeros(n), np.zeros(n))
+        return OperatorState().pack(*np.zeros((2, len(self.goals))))
 
     def joystick(self, vector: np.ndarray, time: float) -> np.ndarray:
-        """What the hand does now. Shape (6,)."""
+        """What the hand does now. Shape (6,).
+
+        Args:
+            vector: the state, as `OperatorState.pack` gives it.
+            time: [s].
+        """
         state, _, _ = OperatorState.unpack(vector, len(self.goals))
         joystick = np.zeros(JOYSTICK_SIZE)
         if time < state.stick_until - EPSILON:
@@ -56,7 +58,13 @@ class OperatorPolicy:
         return joystick
 
     def decide(self, vector: np.ndarray, sight: Sight, time: float) -> np.ndarray:
-        """The state after a look at `sight`. One look, at most one push or press."""
+        """The state after a look at `sight`. One look, at most one push or press.
+
+        Args:
+            vector: the state, as `OperatorState.pack` gives it.
+            sight: what is seen.
+            time: [s].
+        """
         state, given_up, tries = OperatorState.unpack(vector, len(self.goals))
         if time < state.busy_until - EPSILON:
             return vector
@@ -76,7 +84,12 @@ class OperatorPolicy:
         return state.pack(given_up, tries)
 
     def waiting(self, vector: np.ndarray, time: float) -> np.ndarray:
-        """The state while somebody else has the joystick: what was given up stays so, all else is looked at anew."""
+        """The state while somebody else has the joystick: what was given up stays so, all else is looked at anew.
+
+        Args:
+            vector: the state, as `OperatorState.pack` gives it.
+            time: [s].
+        """
         _, given_up, tries = OperatorState.unpack(vector, len(self.goals))
         return OperatorState(busy_until=time + self.options.think_s + self.options.delay_s).pack(given_up, tries)
 
@@ -277,19 +290,10 @@ class OperatorPolicy:
             return
         samples = math.ceil(length / (self.stick_speed * JOYSTICK_PERIOD))
         k = length / (self.stick_speed * JOYSTICK_PERIOD * samples)
-        error = np.random.default_rng((self.seed, HAND, round(time / JOYSTICK_PERIOD))).normal(
-            0, self.options.hand_noise, 2
-        )
+        rng = np.random.default_rng((self.seed, HAND, round(time / JOYSTICK_PERIOD)))
+        error = rng.normal(0, self.options.hand_noise, 2)
         k = min(max(k * (1 + error[0]), 0.15), 1.0)
         angle = math.atan2(up, right) + error[1]
         state.stick_x, state.stick_y = k * math.cos(angle), k * math.sin(angle)
         state.stick_until = time + samples * JOYSTICK_PERIOD
         state.busy_until = state.stick_until + self.options.delay_s + self.options.look_s
-
-
-EPSILON = 1e-6
-"""[s] Slack in comparing sample times."""
-NEAR_GOAL = 0.35
-"""[m] A thing this near the end of the canal hangs at the door; further off it fell elsewhere."""
-HAND, EYE = 1, 2
-"""Streams of random numbers: errors of the hand, errors of the eye."""

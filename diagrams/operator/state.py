@@ -7,6 +7,13 @@ import numpy as np
 
 from canal.navigation import NavigationState
 
+EPSILON = 1e-6
+"""[s] Slack in comparing sample times."""
+NEAR_GOAL = 0.35
+"""[m] A thing this near the end of the canal hangs at the door; further off it fell elsewhere."""
+HAND, EYE = 1, 2
+"""Streams of random numbers: errors of the hand, errors of the eye."""
+
 
 class Mode(IntEnum):
     """What the person is about to do."""
@@ -62,12 +69,22 @@ class OperatorState:
 
     @staticmethod
     def unpack(vector: np.ndarray, n: int) -> tuple["OperatorState", np.ndarray, np.ndarray]:
-        """The state, which things are given up (n,) and the tries (n,) from a vector of SIZE + 2n."""
+        """The state, which things are given up (n,) and the tries (n,) from a vector of SIZE + 2n.
+
+        Args:
+            vector: of SIZE + 2n numbers.
+            n: number of things.
+        """
         size = OperatorState.SIZE
         return OperatorState(*vector[:size].tolist()), vector[size : size + n].copy(), vector[size + n :].copy()
 
     def pack(self, given_up: np.ndarray, tries: np.ndarray) -> np.ndarray:
-        """Inverse of `unpack`."""
+        """Inverse of `unpack`.
+
+        Args:
+            given_up: 0 or 1 for each thing. Shape (n,).
+            tries: so far, for each thing. Shape (n,).
+        """
         mind = (self.mode, self.thing, self.busy_until, self.stick_x, self.stick_y, self.stick_until)
         hand = (self.button, self.button_until, self.grip_height, self.aimed, self.beside)
         return np.concatenate([[*mind, *hand], given_up, tries])

@@ -12,8 +12,8 @@ from canal.navigation.joystick import GRIPPER, JOYSTICK_PERIOD, JOYSTICK_SIZE
 from canal.surface import CanalSurface
 from diagrams.geometry.goals import Goal
 from diagrams.operator.options import OperatorOptions
-from diagrams.operator.policy import EYE, OperatorPolicy
-from diagrams.operator.state import Sight
+from diagrams.operator.policy import OperatorPolicy
+from diagrams.operator.state import EYE, Sight
 from diagrams.teleop.stick_mapping import hand_for
 
 STATE_SIZE = len(FIELD_NAMES)
@@ -143,5 +143,11 @@ class SimulatedOperator(Diagram):
 
     @staticmethod
     def AddToBuilder(*, builder: DiagramBuilder, name: str = "simulated_operator", **kwargs) -> SimulatedOperator:
-        """Add a simulated operator to `builder`; `kwargs` as for the constructor."""
+        """Add a simulated operator to `builder`; `kwargs` as for the constructor.
+
+        Args:
+            builder: of the diagram that it is added to.
+            name: of the system.
+            **kwargs: as for the constructor.
+        """
         return builder.AddNamedSystem(name, SimulatedOperator(**kwargs))

@@ -49,7 +49,12 @@ class FittedTable:
     free: np.ndarray
 
     def room(self, start: np.ndarray, angles: np.ndarray) -> np.ndarray:
-        """How far from a point (2,) [m] things may stand in directions `angles` [rad] of B, [m]. Same shape."""
+        """How far from a point (2,) [m] things may stand in directions `angles` [rad] of B, [m]. Same shape.
+
+        Args:
+            start: in B, [m]. Shape (2,).
+            angles: [rad]. Shape (k,).
+        """
         yaw = math.radians(self.yaw_deg)
         c, s = math.cos(yaw), math.sin(yaw)
         x, y = np.array([[c, s], [-s, c]]) @ (start - self.center)

@@ -132,7 +132,12 @@ def _shift(rng: np.random.Generator, region: Region) -> np.ndarray:
 
 
 def reach_at(reach: Sequence[float], angle: float) -> float:
-    """How far a region reaches at an angle [rad] about its middle, [m]: `reach` is given at equal angles."""
+    """How far a region reaches at an angle [rad] about its middle, [m]: `reach` is given at equal angles.
+
+    Args:
+        reach: at equal angles from x on, [m].
+        angle: [rad].
+    """
     place = angle * len(reach) / (2 * math.pi)
     k, share = math.floor(place), place % 1.0
     return (1.0 - share) * reach[k % len(reach)] + share * reach[(k + 1) % len(reach)]

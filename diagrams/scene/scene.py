@@ -71,7 +71,12 @@ class Scene:
 
 
 def add_lio(plant: MultibodyPlant, robot: Robot) -> tuple[ModelInstanceIndex, RigidTransform]:
-    """Parse the Lio and weld its base; returns its model and X_WB."""
+    """Parse the Lio and weld its base; returns its model and X_WB.
+
+    Args:
+        plant: before it is finalized.
+        robot: where it stands.
+    """
     X_WB = base_pose(robot)
     (lio,) = Parser(plant).AddModels(str(LIO_URDF))
     plant.WeldFrames(plant.world_frame(), plant.GetFrameByName("lio_base", lio), X_WB)
@@ -84,6 +89,13 @@ def add_scene(
     """Add all that a scenario names to a plant that is registered with a scene graph and not yet finalized.
 
     `filmed`: whether cameras will look at it.
+
+    Args:
+        plant: before it is finalized.
+        scene_graph: that the plant is registered with.
+        world: what stands where.
+        seed: of where the items lie.
+        filmed: whether cameras will look at it.
 
     Raises:
         InputError: a model does not exist, or the items do not fit where they may lie.

@@ -161,6 +161,11 @@ class World:
     def resolve(self, name: str, folder: Path, suffix: str = "") -> Path:
         """The file that a name means: beside the scenario if it is there, else in the given folder of models/.
 
+        Args:
+            name: as the scenario has it.
+            folder: of models/ that is searched.
+            suffix: that a name may leave out.
+
         Raises:
             InputError: there is no such file; names those that there are.
         """

@@ -127,7 +127,15 @@ class LioStation(Diagram):
         q0: np.ndarray = START_POSTURE,
         filmed: bool = False,
     ) -> LioStation:
-        """Build a station and add it; its inputs are left to connect."""
+        """Build a station and add it; its inputs are left to connect.
+
+        Args:
+            builder: of the diagram that it is added to.
+            world: what stands where.
+            seed: of where the items lie.
+            q0: posture at the start, [rad]. Shape (6,).
+            filmed: whether cameras will look at it.
+        """
         return builder.AddNamedSystem("lio_station", LioStation(world, seed=seed, q0=q0, filmed=filmed))
 
     def plant_context(self, context: Context) -> Context:
@@ -147,7 +155,12 @@ def plant_config(contact: Contact) -> MultibodyPlantConfig:
 
 
 def set_drives(plant: MultibodyPlant, lio: ModelInstanceIndex) -> None:
-    """Give each actuator of the Lio its controller; before the plant is finalized."""
+    """Give each actuator of the Lio its controller; before the plant is finalized.
+
+    Args:
+        plant: before it is finalized.
+        lio: the Lio's model.
+    """
     for k in range(ARM):
         drive = plant.GetJointActuatorByName(f"lio_joint_{k + 1}", lio)
         drive.set_controller_gains(PdControllerGains(p=STIFFNESS[k], d=DAMPING[k]))
@@ -190,6 +203,10 @@ def arm_stops(plant: MultibodyPlant) -> tuple[np.ndarray, np.ndarray]:
 
 def checked_posture(q0: np.ndarray, stops: tuple[np.ndarray, np.ndarray]) -> np.ndarray:
     """The arm's posture `q0` (6,) [rad] as it was given, within `stops`.
+
+    Args:
+        q0: [rad]. Shape (6,).
+        stops: least and largest angles, [rad]. Shapes (6,).
 
     Raises:
         InputError: a joint is beyond its limits, or not finite.

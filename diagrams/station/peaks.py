@@ -60,7 +60,13 @@ class Peaks(LeafSystem):
 
     @staticmethod
     def AddToBuilder(*, builder: DiagramBuilder, name: str = "peaks", **kwargs) -> Peaks:
-        """Add it to `builder`; `kwargs` as for the constructor."""
+        """Add it to `builder`; `kwargs` as for the constructor.
+
+        Args:
+            builder: of the diagram that it is added to.
+            name: of the system.
+            **kwargs: as for the constructor.
+        """
         return builder.AddNamedSystem(name, Peaks(**kwargs))
 
     def look(self, root: Context) -> None:

@@ -121,7 +121,13 @@ class Rest:
         return [name for name, awake in zip(self._names, self._is_awake(root_context), strict=True) if awake]
 
     def set_awake(self, root_context: Context, wanted: np.ndarray, *, arm: bool = True) -> None:
-        """Wake the pieces that `wanted` (n,) names, and the `arm`, and put the others to rest."""
+        """Wake the pieces that `wanted` (n,) names, and the `arm`, and put the others to rest.
+
+        Args:
+            root_context: of the whole diagram.
+            wanted: whether each piece is to be awake. Shape (n,).
+            arm: whether the arm is.
+        """
         before = self._is_awake(root_context)
         after = np.append(wanted, arm or self._arm is None)
         if (before == after).all():
@@ -234,7 +240,12 @@ class Rest:
 
 
 def rest_of(station: LioStation, *, arm: bool = True) -> Rest:
-    """What lets a station's items rest, and with `arm` the robot, too."""
+    """What lets a station's items rest, and with `arm` the robot, too.
+
+    Args:
+        station: that is looked at.
+        arm: whether the robot may rest, too.
+    """
     return Rest(
         plant=station.plant,
         scene_graph=station.scene_graph,

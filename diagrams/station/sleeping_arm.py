@@ -89,7 +89,12 @@ class Standing(LeafSystem):
         return self._calling.Eval(context).item(0)
 
     def set_stage(self, context: Context, stage: float) -> None:
-        """Change it; what touches, and the drives' command, is kept from `ASLEEP` on."""
+        """Change it; what touches, and the drives' command, is kept from `ASLEEP` on.
+
+        Args:
+            context: of the system.
+            stage: see the constants of this module.
+        """
         if stage == ASLEEP:
             context.SetAbstractState(int(self._held), self._contacts.Eval(context))
         context.SetDiscreteState(int(self._stage), [stage, *self._command.Eval(context)])

@@ -41,7 +41,12 @@ class Piece(Protocol):
 
     def speed(self, context: Context, size: float) -> float:
         """Of its fastest point [m/s], at most `size` [m] from its middle; infinite where it stands still only for a
-        moment."""
+        moment.
+
+        Args:
+            context: of the plant.
+            size: from its middle to its furthest point, [m].
+        """
         ...
 
     def is_awake(self, context: Context) -> bool:
@@ -81,7 +86,12 @@ class SoftPiece:
         return UniformGravityFieldElement.kDefaultStrength * self.item.shape.mass
 
     def speed(self, context: Context, size: float) -> float:
-        """See `Piece`."""
+        """See `Piece`.
+
+        Args:
+            context: of the plant.
+            size: from its middle to its furthest point, [m].
+        """
         if not self.is_awake(context):
             return 0.0
         return float(np.sqrt((soft_velocities(self.plant, context, self.item) ** 2).sum(axis=1).max()))
@@ -126,7 +136,12 @@ class RigidPiece:
         return UniformGravityFieldElement.kDefaultStrength * float(self.item.body.default_mass())
 
     def speed(self, context: Context, size: float) -> float:
-        """See `Piece`."""
+        """See `Piece`.
+
+        Args:
+            context: of the plant.
+            size: from its middle to its furthest point, [m].
+        """
         if not self.is_awake(context):
             return 0.0
         V = self.plant.EvalBodySpatialVelocityInWorld(context, self.item.body)
@@ -151,7 +166,13 @@ class RigidPiece:
 
 
 def make_piece(plant: MultibodyPlant, scene_graph: SceneGraph, item: RigidItem | SoftItem) -> Piece:
-    """As its kind is."""
+    """As its kind is.
+
+    Args:
+        plant: finalized.
+        scene_graph: that the plant is registered with.
+        item: one of the plant's.
+    """
     return SoftPiece(plant, scene_graph, item) if isinstance(item, SoftItem) else RigidPiece(plant, item)
 
 

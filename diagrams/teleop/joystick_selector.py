@@ -54,7 +54,13 @@ class RecordedJoystick(LeafSystem):
     def AddToBuilder(
         *, builder: DiagramBuilder, recording: JoystickRecording, name: str = "recorded_joystick"
     ) -> RecordedJoystick:
-        """Add a source that plays `recording` to `builder`."""
+        """Add a source that plays `recording` to `builder`.
+
+        Args:
+            builder: of the diagram that it is added to.
+            recording: that is played.
+            name: of the system.
+        """
         return builder.AddNamedSystem(name, RecordedJoystick(recording))
 
     def _sample(self, context: Context, discrete: DiscreteValues) -> None:
@@ -118,7 +124,16 @@ class JoystickSelector(LeafSystem):
         simulated_person_in_charge: OutputPort | None = None,
         name: str = "joystick_selector",
     ) -> JoystickSelector:
-        """Add a selector to `builder`, connected to the sources that there are."""
+        """Add a selector to `builder`, connected to the sources that there are.
+
+        Args:
+            builder: of the diagram that it is added to.
+            person: port of a person's joystick.
+            person_in_charge: port that says whether the person has the robot.
+            simulated: port of the simulated operator's or a recorded joystick.
+            simulated_person_in_charge: port that says whether a person held it when it was recorded.
+            name: of the system.
+        """
         selector = builder.AddNamedSystem(name, JoystickSelector())
         for source, port in (
             (person, "person"),

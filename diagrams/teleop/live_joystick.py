@@ -46,7 +46,13 @@ class LiveJoystick(LeafSystem):
     def AddToBuilder(
         *, builder: DiagramBuilder, read: Callable[[], LiveSample], name: str = "live_joystick"
     ) -> LiveJoystick:
-        """Add a joystick that `read` samples to `builder`."""
+        """Add a joystick that `read` samples to `builder`.
+
+        Args:
+            builder: of the diagram that it is added to.
+            read: gives the latest sample, and never waits.
+            name: of the system.
+        """
         return builder.AddNamedSystem(name, LiveJoystick(read))
 
     def _sample(self, context: Context, discrete: DiscreteValues) -> None:

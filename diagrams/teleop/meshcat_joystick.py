@@ -58,6 +58,11 @@ def read_gamepad(axes: Sequence[float], buttons: Sequence[float], dead_zone: flo
     """Joystick vector of a gamepad in the browsers' standard mapping (left stick, its y pointing down).
 
     The dead zone is round and the stick starts from 0 at its edge; whatever is not finite or missing counts as 0.
+
+    Args:
+        axes: of the device, in [-1, 1].
+        buttons: of the device, in [0, 1].
+        dead_zone: length of the stick below which it rests, in [0, 1).
     """
     joystick = np.zeros(JOYSTICK_SIZE)
     if len(axes) >= 2:
@@ -130,7 +135,13 @@ class MeshcatJoystick(LeafSystem):
 
     @staticmethod
     def AddToBuilder(*, builder: DiagramBuilder, meshcat: Meshcat, name: str = "meshcat_joystick") -> MeshcatJoystick:
-        """Add a joystick in `meshcat`'s page to `builder`."""
+        """Add a joystick in `meshcat`'s page to `builder`.
+
+        Args:
+            builder: of the diagram that it is added to.
+            meshcat: that shows it.
+            name: of the system.
+        """
         return builder.AddNamedSystem(name, MeshcatJoystick(meshcat))
 
     def _clicks(self) -> np.ndarray:

@@ -75,7 +75,17 @@ class StickMapping(LeafSystem):
         choose: Callable[[], tuple[int, np.ndarray | None]] | None = None,
         name: str = "stick_mapping",
     ) -> StickMapping:
-        """Add a mapping to `builder`, connected to a joystick and to the navigator."""
+        """Add a mapping to `builder`, connected to a joystick and to the navigator.
+
+        Args:
+            builder: of the diagram that it is added to.
+            canal: in the robot's base frame.
+            directions: of right and up on each disk. Shape (N, 2, 3). None: the correction axes.
+            joystick: port with right and up.
+            navigation_state: port of the navigator.
+            choose: asked for other directions; None: they stay.
+            name: of the system.
+        """
         mapping = builder.AddNamedSystem(name, StickMapping(canal, directions, choose))
         builder.Connect(joystick, mapping.GetInputPort("joystick"))
         builder.Connect(navigation_state, mapping.GetInputPort("navigation_state"))

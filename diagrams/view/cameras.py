@@ -78,7 +78,12 @@ def film_kind(path: Path) -> str:
 
 
 def look_at(eye: Sequence[float], target: Sequence[float]) -> RigidTransform:
-    """The pose of a camera (z forward, y down) that looks from one point at another, upright."""
+    """The pose of a camera (z forward, y down) that looks from one point at another, upright.
+
+    Args:
+        eye: where it stands, [m]. Shape (3,).
+        target: what it looks at, [m]. Shape (3,).
+    """
     z = np.subtract(target, eye)
     z = z / np.linalg.norm(z)
     x = np.cross(z, (0.0, 0.0, 1.0))
@@ -103,7 +108,16 @@ def add_camera(
     *, builder: DiagramBuilder, station: LioStation, X: RigidTransform, size: tuple[int, int], fov_deg: float,
     body: str | None = None,
 ) -> RgbdSensor:  # fmt: skip
-    """Add a colour camera at `X` in the world, or on a body of the Lio."""
+    """Add a colour camera at `X` in the world, or on a body of the Lio.
+
+    Args:
+        builder: of the diagram that it is added to.
+        station: that is filmed.
+        X: pose of the camera.
+        size: of the picture, width and height in pixels.
+        fov_deg: vertical field of view, [°].
+        body: of the Lio that carries it; None: it stands in the world.
+    """
     add_renderer(station.scene_graph)
     core = RenderCameraCore(
         RENDERER, CameraInfo(*size, np.deg2rad(fov_deg)), ClippingRange(0.01, 12.0), RigidTransform()
@@ -189,6 +203,12 @@ class VideoRecorder(LeafSystem):
         """Add the room's camera, where it sees the `task` (a key of `VIEWS`), the gripper's, and the recorder.
 
         Call `save` after the run.
+
+        Args:
+            builder: of the diagram that it is added to.
+            station: that is filmed.
+            task: key of `VIEWS`.
+            path: of the film.
         """
         view = VIEWS[task]
         recorder = builder.AddNamedSystem("video_recorder", VideoRecorder(path))

@@ -48,6 +48,11 @@ def tube(points: np.ndarray, radius: float, sides: int = 6) -> TriangleMesh:
     """A tube about a polyline. `points` (n ≥ 2, 3) and `radius` in metres; closed at its ends.
 
     Its cross-sections do not twist: each turns into the next by the smallest rotation.
+
+    Args:
+        points: of the polyline, [m]. Shape (n ≥ 2, 3).
+        radius: of the tube, [m].
+        sides: corners of the tube's cross-section.
     """
     points = np.asarray(points, dtype=float)
     rings = np.empty((len(points), sides, 3))
@@ -67,7 +72,14 @@ def tube(points: np.ndarray, radius: float, sides: int = 6) -> TriangleMesh:
 
 
 def dashes(points: np.ndarray, radius: float, length: float, gap: float) -> TriangleMesh:
-    """A dashed tube about a polyline (n, 3): dashes of `length` with a `gap` between [m]."""
+    """A dashed tube about a polyline (n, 3): dashes of `length` with a `gap` between [m].
+
+    Args:
+        points: of the polyline, [m]. Shape (n ≥ 2, 3).
+        radius: of the tube, [m].
+        length: of a dash, [m].
+        gap: between dashes, [m].
+    """
     points = np.asarray(points, dtype=float)
     steps = np.linalg.norm(np.diff(points, axis=0), axis=1)
     arc = np.concatenate([[0.0], np.cumsum(steps)])
@@ -79,7 +91,13 @@ def dashes(points: np.ndarray, radius: float, length: float, gap: float) -> Tria
 
 
 def ring(thickness: float, segments: int = 64, sides: int = 8) -> TriangleMesh:
-    """A torus of radius 1 about z; `thickness` is the radius of its tube, relative to that 1."""
+    """A torus of radius 1 about z; `thickness` is the radius of its tube, relative to that 1.
+
+    Args:
+        thickness: radius of the tube, relative to the torus's.
+        segments: along the torus.
+        sides: corners of the tube's cross-section.
+    """
     around = circle_angles(segments)
     outward = np.stack([np.cos(around), np.sin(around), np.zeros(segments)], axis=1)[:, None, :]
     turn = -circle_angles(sides)[None, :, None]
@@ -109,7 +127,14 @@ def bead(segments: int = 8) -> TriangleMesh:
 
 
 def arrow(shaft: float = 0.035, head: float = 0.1, head_length: float = 0.3, sides: int = 16) -> TriangleMesh:
-    """An arrow of length 1 along z; radii of `shaft` and `head` relative to that 1."""
+    """An arrow of length 1 along z; radii of `shaft` and `head` relative to that 1.
+
+    Args:
+        shaft: its radius.
+        head: its radius.
+        head_length: along z.
+        sides: corners of the tube's cross-section.
+    """
     neck = 1 - head_length
     profile = np.array([[0, 0], [shaft, 0], [shaft, neck], [head, neck], [0, 1.0]])
     angles = circle_angles(sides)
@@ -123,17 +148,36 @@ def arrow(shaft: float = 0.035, head: float = 0.1, head_length: float = 0.3, sid
 
 
 def disk_rims(canal: CanalSurface, disks: np.ndarray, segments: int) -> np.ndarray:
-    """Points on the rims of the canal's `disks`, clipped at its planes. Shape (len(disks), segments, 3), in B."""
+    """Points on the rims of the canal's `disks`, clipped at its planes. Shape (len(disks), segments, 3), in B.
+
+    Args:
+        canal: in the robot's base frame.
+        disks: continuous indices. Shape (P,).
+        segments: how many pieces the shape is made of.
+    """
     return np.array([[canal.point(disk, 1.0, phi) for phi in circle_angles(segments)] for disk in disks])
 
 
 def canal_skin(canal: CanalSurface, disks: np.ndarray, segments: int = 40) -> TriangleMesh:
-    """The canal's surface through the rims of `disks`; vertex k belongs to disk `disks[k // segments]`."""
+    """The canal's surface through the rims of `disks`; vertex k belongs to disk `disks[k // segments]`.
+
+    Args:
+        canal: in the robot's base frame.
+        disks: continuous indices. Shape (P,).
+        segments: how many pieces the shape is made of.
+    """
     return _skin(disk_rims(canal, disks, segments))
 
 
 def canal_rings(canal: CanalSurface, disks: np.ndarray, thickness: float, segments: int = 48) -> TriangleMesh:
-    """The rims of `disks` as rings whose tube has the radius `thickness` [m]."""
+    """The rims of `disks` as rings whose tube has the radius `thickness` [m].
+
+    Args:
+        canal: in the robot's base frame.
+        disks: continuous indices. Shape (P,).
+        thickness: radius of a ring's tube, [m].
+        segments: how many pieces the shape is made of.
+    """
     turn = -circle_angles(4)[None, :, None]
     rings = []
     for disk, rim in zip(disks, disk_rims(canal, disks, segments), strict=True):

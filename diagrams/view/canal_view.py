@@ -108,7 +108,19 @@ class CanalView(LeafSystem):
         disk_colors: np.ndarray | None = None,
         name: str = "canal_view",
     ) -> CanalView:
-        """Add a view of `canal`, and with `X_BT` (7) one of the path travelled, to `builder`; connect them."""
+        """Add a view of `canal`, and with `X_BT` (7) one of the path travelled, to `builder`; connect them.
+
+        Args:
+            builder: of the diagram that it is added to.
+            meshcat: that shows it.
+            canal: in the robot's base frame.
+            navigation_state: port of the navigator.
+            X_BT: port with the measured pose of the tool; None: no trail.
+            options: of navigation, for the path ahead.
+            X_WB: where the robot's base stands; None: in the origin.
+            disk_colors: of the surface. Shape (N, 3). None: one colour.
+            name: of the system.
+        """
         view = builder.AddNamedSystem(
             name, CanalView(meshcat, canal, options=options, X_WB=X_WB, disk_colors=disk_colors)
         )

@@ -38,7 +38,13 @@ class MeshcatNotice:
         self._X_WN = X_WB.multiply(X_BN)
 
     def show(self, before: str, text: str, time: float) -> None:
-        """Take the text `before` away and show `text` instead, at `time` [s]; empty ones are no text."""
+        """Take the text `before` away and show `text` instead, at `time` [s]; empty ones are no text.
+
+        Args:
+            before: text that is shown now.
+            text: that is to be shown.
+            time: when, [s].
+        """
         if before and self._meshcat.HasPath(self._place(before)):
             self._meshcat.SetProperty(self._place(before), "visible", False, time)
         if not text:

@@ -71,7 +71,16 @@ class TrailView(LeafSystem):
         X_WB: RigidTransform | None = None,
         name: str = "trail_view",
     ) -> TrailView:
-        """Add a view of the path travelled to `builder` and connect it."""
+        """Add a view of the path travelled to `builder` and connect it.
+
+        Args:
+            builder: of the diagram that it is added to.
+            meshcat: that shows it.
+            X_BT: port with the measured pose of the tool.
+            navigation_state: port of the navigator; None: corrections look like the rest.
+            X_WB: where the robot's base stands; None: in the origin.
+            name: of the system.
+        """
         view = builder.AddNamedSystem(name, TrailView(meshcat, X_WB=X_WB))
         builder.Connect(X_BT, view.GetInputPort("X_BT"))
         if navigation_state is not None:

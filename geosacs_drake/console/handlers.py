@@ -42,7 +42,12 @@ class Server(Protocol):
         """The first words to a page."""
 
     def refused(self, code: int, why: str) -> str:
-        """What is said to a page whose message is broken."""
+        """What is said to a page whose message is broken.
+
+        Args:
+            code: HTTP status.
+            why: in words.
+        """
 
 
 class _Guarded(RequestHandler):
