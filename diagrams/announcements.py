@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from enum import StrEnum
+from typing import Any
 
 import numpy as np
 from pydrake.systems.framework import Context, DiagramBuilder, DiscreteValues, LeafSystem
@@ -146,7 +147,7 @@ class Announcer(LeafSystem):
         self.DeclarePeriodicDiscreteUpdateEvent(JOYSTICK_PERIOD, 0.0, self._look)
 
     @staticmethod
-    def AddToBuilder(*, builder: DiagramBuilder, name: str = "announcer", **kwargs) -> Announcer:
+    def AddToBuilder(*, builder: DiagramBuilder, name: str = "announcer", **kwargs: Any) -> Announcer:
         """Add an announcer to `builder`; `kwargs` as for the constructor.
 
         Args:

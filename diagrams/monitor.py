@@ -1,5 +1,7 @@
 """The monitor: what is in its place, since when, and the end of a run with a reason (docs/method.md, 7)."""
 
+from typing import Any
+
 import numpy as np
 from pydrake.systems.framework import Context, DiagramBuilder, DiscreteValues, EventStatus, LeafSystem
 
@@ -62,7 +64,7 @@ class Monitor(LeafSystem):
         self.DeclarePeriodicDiscreteUpdateEvent(JUDGING_PERIOD, JUDGING_PERIOD, self._judge)
 
     @staticmethod
-    def AddToBuilder(*, builder: DiagramBuilder, name: str = "monitor", **kwargs) -> "Monitor":
+    def AddToBuilder(*, builder: DiagramBuilder, name: str = "monitor", **kwargs: Any) -> "Monitor":
         """Add a monitor to `builder`; `kwargs` as for the constructor.
 
         Args:

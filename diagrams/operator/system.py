@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 from pydrake.math import RigidTransform
 from pydrake.systems.framework import Context, Diagram, DiagramBuilder, DiscreteValues, LeafSystem
@@ -142,7 +144,7 @@ class SimulatedOperator(Diagram):
         builder.BuildInto(self)
 
     @staticmethod
-    def AddToBuilder(*, builder: DiagramBuilder, name: str = "simulated_operator", **kwargs) -> SimulatedOperator:
+    def AddToBuilder(*, builder: DiagramBuilder, name: str = "simulated_operator", **kwargs: Any) -> SimulatedOperator:
         """Add a simulated operator to `builder`; `kwargs` as for the constructor.
 
         Args:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 from pydrake.common.value import Value
 from pydrake.multibody.plant import ContactResults
@@ -59,7 +61,7 @@ class Peaks(LeafSystem):
         self.DeclarePeriodicDiscreteUpdateEvent(period, 0.0, self._tick)
 
     @staticmethod
-    def AddToBuilder(*, builder: DiagramBuilder, name: str = "peaks", **kwargs) -> Peaks:
+    def AddToBuilder(*, builder: DiagramBuilder, name: str = "peaks", **kwargs: Any) -> Peaks:
         """Add it to `builder`; `kwargs` as for the constructor.
 
         Args:
