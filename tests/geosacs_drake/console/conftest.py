@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import pytest
+from console_status import STATUS
 from waiting import wait_until
 
 from geosacs_drake.console.bindings import BindingFiles
@@ -16,33 +17,6 @@ from geosacs_drake.console.server import ConsoleServer
 
 if TYPE_CHECKING:
     from playwright.sync_api import Page
-
-STATUS: dict[str, Any] = {
-    "time_s": 12.0,
-    "headline": "Going to pick",
-    "sentence": "The stick shifts its path to the side.",
-    "tone": "go",
-    "leg": "to pick",
-    "progress": 0.4,
-    "phase": -0.4,
-    "eta": 0.5,
-    "phi": 0.3,
-    "radius_mm": 90.0,
-    "axes": [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0]],
-    "correcting": False,
-    "corrections": 2,
-    "correction_s": 1.5,
-    "correction_mm": 80.0,
-    "task_s": 12.0,
-    "closed": False,
-    "running": True,
-    "paused": False,
-    "waiting": False,
-    "alarm": False,
-    "stick": [0.0, 0.0],
-    "items": [{"name": "sock", "placed": False}],
-    "rate": 1.0,
-}
 
 
 @pytest.fixture

@@ -3,6 +3,7 @@
 from importlib.resources import files
 
 import pytest
+from console_status import STATUS
 
 pytestmark = pytest.mark.browser
 
@@ -35,8 +36,6 @@ def test_the_page_has_no_violation(console, size):
 
 @pytest.mark.parametrize("tone", ["ready", "wait", "stop"])
 def test_every_tone_can_be_read(console, server, tone):
-    from conftest import STATUS
-
     server.show(STATUS | {"tone": tone, "headline": f"Now {tone}"})
     console.get_by_role("heading", name=f"Now {tone}").wait_for()
     console.wait_for_timeout(500)  # the colour fades in

@@ -3,6 +3,7 @@
 import json
 
 import pytest
+from console_status import STATUS
 from waiting import wait_until
 
 from canal.navigation.joystick import GRIPPER, REVERSE, START, STOP
@@ -32,8 +33,6 @@ def faked(page):
 @pytest.fixture
 def console(faked, request, server):
     """The page, with what a test chooses in the settings."""
-    from conftest import STATUS
-
     faked.set_viewport_size({"width": 1280, "height": 800})
     chosen = getattr(request, "param", {})
     faked.add_init_script(CHOOSE % json.dumps(chosen))
