@@ -13,7 +13,7 @@ from benchmarks.canal_quality import HAND_GUIDED, RECORDED, hard_demonstrations
 from canal.demonstration import save_demonstration
 from canal.surface_file import load_canal
 
-MINUTES = 0.3
+MINUTES = 0.4
 HELD_BACK = range(7100, 7124)
 """Seeds of the tests' generator that no test looks at: 20 pairs within reach, and some that are not."""
 WITHIN_REACH = 20

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import os
 import re
+import signal
 import subprocess
 import sys
 import tempfile
@@ -18,8 +19,8 @@ from benchmarks.acceptance.check import Figures, Job
 ROOT = Path(__file__).parents[2]
 ONE_THREAD = dict.fromkeys(("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"), "1")
 """Threads of linear algebra fight for the cores that the other job needs."""
-PATIENCE = 8.0
-"""Times the minutes of a job (and two minutes more) after which it is taken to hang, and is ended."""
+PATIENCE, AT_LEAST = 8.0, 2.0
+"""Times the minutes of a job, and minutes more, after which it is taken to hang, and is ended with all it started."""
 
 
 def run_jobs(
@@ -59,18 +60,23 @@ def run_job(job: Job, output: Path) -> tuple[Figures, str]:
     with tempfile.TemporaryDirectory() as scratch, output.open("w") as printed:
         answer = Path(scratch) / "figures.json"
         command = [sys.executable, "-m", "benchmarks.acceptance.job", where, json.dumps(job.arguments), str(answer)]
-        try:
-            status = subprocess.run(
-                command,
-                cwd=ROOT,  # where `benchmarks` is found
-                env=os.environ | ONE_THREAD,
-                stdin=subprocess.DEVNULL,
-                stdout=printed,
-                stderr=subprocess.STDOUT,
-                timeout=60 * (2 + PATIENCE * job.minutes),
-            ).returncode
-        except subprocess.TimeoutExpired as late:
-            return {}, f"hung, ended after {late.timeout:.0f} s; see {output}"
+        patience = 60 * (AT_LEAST + PATIENCE * job.minutes)
+        with subprocess.Popen(
+            command,
+            cwd=ROOT,  # where `benchmarks` is found
+            env=os.environ | ONE_THREAD,
+            stdin=subprocess.DEVNULL,
+            stdout=printed,
+            stderr=subprocess.STDOUT,
+            start_new_session=True,
+        ) as process:
+            try:
+                status = process.wait(patience)
+            except BaseException as error:  # a Ctrl-C does not reach the new session
+                os.killpg(process.pid, signal.SIGKILL)  # with the commands that the job has started
+                if not isinstance(error, subprocess.TimeoutExpired):
+                    raise
+                return {}, f"hung, ended after {patience:.0f} s; see {output}"
         if status or not answer.exists():
             return {}, f"ended with status {status}; see {output}"
         return json.loads(answer.read_text()), ""

@@ -1,6 +1,8 @@
 """Jobs for the tests of the acceptance table: in a file of their own, so that their processes start fast."""
 
 import os
+import subprocess
+from pathlib import Path
 
 
 def square(number):
@@ -11,3 +13,12 @@ def failing(how):
     if how == "exit":
         os._exit(0)
     raise RuntimeError(how)
+
+
+def lingering(path):
+    """Hangs in a command, whose process is named in a file."""
+    with subprocess.Popen(["sleep", "60"]) as child:
+        Path(f"{path}.part").write_text(str(child.pid))
+        Path(f"{path}.part").rename(path)
+        child.wait()
+    return {}

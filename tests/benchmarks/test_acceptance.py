@@ -7,9 +7,10 @@ import os
 from pathlib import Path
 
 import pytest
-from acceptance_jobs import failing, square
+from acceptance_jobs import failing, lingering, square
 
 from benchmarks.acceptance import __main__ as acceptance
+from benchmarks.acceptance import schedule
 from benchmarks.acceptance.check import Bound, Check, Count, Job, Worst, at_least, at_most, exactly
 from benchmarks.acceptance.registry import all_checks
 from benchmarks.acceptance.schedule import run_jobs
@@ -62,6 +63,19 @@ def test_jobs_run_in_processes_of_their_own_and_one_that_fails_harms_no_other(tm
     assert found[0]["threads"] == 1, "one thread of linear algebra a job"
     assert [name for name, failure in seen if failure] == ["failing exit", "failing loud"], "the longest first"
     assert "RuntimeError: loud" in (tmp_path / "failing-loud.txt").read_text()
+
+
+def test_a_job_that_hangs_is_ended_with_what_it_has_started(tmp_path, monkeypatch):
+    monkeypatch.setattr(schedule, "AT_LEAST", 0.0)
+    monkeypatch.setattr(schedule, "PATIENCE", 1.0)
+    named = tmp_path / "pid"
+    job = Job(lingering, (str(named),), 0.15)
+    figures, failure = schedule.run_job(job, tmp_path / "out.txt")
+    assert figures == {}
+    assert failure.startswith("hung, ended after 9 s")
+    child = Path(f"/proc/{named.read_text()}")
+    ended = not child.exists() or "Z" in (child / "stat").read_text().rsplit(")", 1)[1].split()[0]
+    assert ended, "the command goes on, and takes the time of the jobs that follow"
 
 
 def test_every_check_can_be_run_as_it_is_declared():
