@@ -172,9 +172,8 @@ def _keys() -> str:
             waiting += [(path, inner) for inner in below]
             anchors = [described.setdefault(inner, path).replace(".", "").lower() for inner in below]
             link = f" ([keys](#{anchors[0]}))" if anchors else ""
-            lines.append(
-                f"| `{field.name}` | {kind}{link} | {_default(field)} | {_cell(meanings.get(field.name, ''))} |"
-            )
+            meaning = meanings.get(field.name) or (" ".join(_class_docstring(below[0]).split()) if below else "")
+            lines.append(f"| `{field.name}` | {kind}{link} | {_default(field)} | {_cell(meaning)} |")
         lines.append("")
     return "\n".join(lines)
 
