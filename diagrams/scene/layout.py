@@ -186,7 +186,7 @@ def _in_turn(
     """
     goals = [item.goal for item in world.items if item.goal is not None]
     known = [mark for mark in marks if mark is not None]
-    alike = len(goals) == len(known) == len(marks) and all(goal == goals[0] for goal in goals)
+    alike = 0 < len(goals) == len(known) == len(marks) and all(goal == goals[0] for goal in goals)
     if not alike or goals[0].room is None or not goals[0].room.way:
         return marks
     taken, cleared = _turns(rng, starts, [item.start for item in world.items]), _turns(rng, known, goals)
