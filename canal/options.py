@@ -22,7 +22,6 @@ Share = Annotated[float, Field(ge=0, le=1)]
 """Numbers above 0, from 0 on, and from 0 to 1."""
 Coordinate = Annotated[float, Field(ge=-100, le=100)]
 """[m]: a robot's surroundings; what is further away was given in other units."""
-Vector2 = Annotated[list[float], Field(min_length=2, max_length=2)]
 Vector3 = Annotated[list[float], Field(min_length=3, max_length=3)]
 Position = Annotated[list[Coordinate], Field(min_length=3, max_length=3)]
 """Lists of so many finite numbers."""

@@ -18,7 +18,6 @@ SECONDS = 10.0
 HOLDS_NOW = ("learn_n_disks_201.yaml",)
 """Was refused once; every field of learning can be given now."""
 GOOD = MODELS / "demonstrations" / "relocation_1.npz"
-OTHER = MODELS / "demonstrations" / "relocation_2.npz"
 RUN = ("run_relocation", "--headless", "--duration", "1")
 
 

@@ -73,15 +73,6 @@ class OrientationWeightedIk(LeafSystem):
         """The solver, for reports; it has no state."""
         return self._solver
 
-    def set_posture(self, context: Context, q: np.ndarray) -> None:
-        """Start from the posture q, shape (n,), at rest.
-
-        Args:
-            context: of the system.
-            q: [rad]. Shape (n,).
-        """
-        context.SetDiscreteState(self._command, np.concatenate((q, np.zeros(self._solver.n))))
-
     def _tick(self, context: Context, updates: DiscreteValues) -> None:
         n = self._solver.n
         command = context.get_discrete_state().value(self._command)

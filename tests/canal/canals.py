@@ -11,6 +11,21 @@ from canal.learning_options import LearningOptions
 from canal.support_planes import SupportPlane
 from canal.surface import CanalSurface
 
+DOCUMENTED = (
+    "directrix",
+    "radii",
+    "tangents",
+    "normals",
+    "x_axes",
+    "y_axes",
+    "orientations",
+    "orientation_sd",
+    "orientation_weights",
+    "demonstrations",
+    "demonstration_orientations",
+)
+"""Arrays of a canal that its file documents."""
+
 
 @cache
 def hard_canal(seed: int = 3, n: int = 3, shape: str = "pick_and_place") -> CanalSurface:

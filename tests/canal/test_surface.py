@@ -2,7 +2,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from canals import elliptic_canal, hard_canal
+from canals import DOCUMENTED, elliptic_canal, hard_canal
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -14,19 +14,6 @@ from canal.surface_file import load_canal, save_canal
 disks = st.floats(0.0, 200.0)
 ratios = st.floats(0.0, 1.0)
 angles = st.floats(-3.1, 3.1)
-DOCUMENTED = (
-    "directrix",
-    "radii",
-    "tangents",
-    "normals",
-    "x_axes",
-    "y_axes",
-    "orientations",
-    "orientation_sd",
-    "orientation_weights",
-    "demonstrations",
-    "demonstration_orientations",
-)
 
 
 @given(disks, st.floats(0.001, 1.0), angles)
