@@ -16,7 +16,7 @@ import numpy as np
 from scipy.optimize import minimize
 
 from benchmarks.ik.cases import DT, Case, adversarial_cases, demonstration_cases
-from benchmarks.ik.clear import keep_clear
+from benchmarks.ik.collision_avoidance import collision_avoidance
 from benchmarks.ik.fuzz import fuzz
 from benchmarks.ik.rivals import SAME_OBJECTIVE, Contender, contenders
 from benchmarks.table import Row, print_table, write_csv
@@ -64,7 +64,7 @@ def main() -> None:
         for mode, samples in (("tight", pooled), ("paced", paced)):
             ratio = float(np.median(samples[name]["time"]) / np.median(samples["this"]["time"]))
             rows.append(Row(f"demonstrations, {mode}", name, "time over this", ratio, "1"))
-    rows += keep_clear()
+    rows += collision_avoidance()
     rows += fuzz(solver, arguments.fuzz)
     write_csv(arguments.output, rows)
     print_table([row for row in rows if " w=" not in row.case])

@@ -1,10 +1,10 @@
 """Which time step, elements, contact approximation and solver settings for cloth: `make bench-soft`.
 
 Each contender does three things. *carry*: the hand takes the towel from a floor, lifts it, holds it for 2 s and carries
-it through a quarter turn to the door; slip is how far the nodes between the pads move in the hand. *rest*: three pieces
-lie side by side for 2 s after they settled; energy must not grow and nothing may wander. *pile*: three pieces fall into
-the drum on each other; how fast it still is while they do. Speeds are CPU time of the plant alone. Then, for soft and
-rigid pieces, how far from each other they end with a time step and with half of it (`half_step`).
+it through a quarter turn to the door; slip is how far the nodes between the pads move in the hand. *rest*: three
+clothes lie side by side for 2 s after they settled; energy must not grow and nothing may wander. *pile*: three clothes
+fall into the drum on each other; how fast it still is while they do. Speeds are CPU time of the plant alone. Then, for
+soft and rigid clothes, how far from each other they end with a time step and with half of it (`half_step`).
 """
 
 import argparse
@@ -15,11 +15,11 @@ from pathlib import Path
 
 import numpy as np
 
+from benchmarks.deformable_rig import CLOSED, OPEN, Rig, Setting
 from benchmarks.half_step import apart
-from benchmarks.soft_rig import CLOSED, OPEN, Rig, Setting
 from benchmarks.table import Row, print_table, write_csv
 from diagrams.deformable.contact import MARGIN
-from diagrams.deformable.items import SoftMaterial
+from diagrams.deformable.items import DeformableMaterial
 from diagrams.deformable.laundry import make_shape
 
 KINDS = ("sock", "tshirt", "towel")
@@ -29,7 +29,7 @@ PADS = 5
 
 def contenders() -> Iterator[tuple[str, str, Setting, int]]:
     """Group, name, setting and segments of the towel; the choice first in each group."""
-    base, cloth = Setting(), SoftMaterial()
+    base, cloth = Setting(), DeformableMaterial()
     for step in (base.time_step, 0.002, 0.005, 0.01):
         yield "time step", f"{1e3 * step:g} ms", replace(base, time_step=step), 0
     for name in ("lagged", "similar", "sap"):
@@ -78,11 +78,11 @@ def _moved(rig: Rig, held: np.ndarray, near: np.ndarray) -> float:
 
 
 def rest(setting: Setting, segments: int) -> Iterator[tuple[str, float, str]]:
-    """Three pieces side by side."""
+    """Three clothes side by side."""
     shapes = {k: make_shape(k, segments=segments if k == "towel" else 0) for k in KINDS}
     rig = Rig([(k, shapes[k], [0.45, 0.17 * (i - 1), 0.345], 0.0) for i, k in enumerate(KINDS)], setting)
     rig.wait(1.0)
-    places = [rig.nodes(k).mean(axis=0) for k in range(3)]
+    starts = [rig.nodes(k).mean(axis=0) for k in range(3)]
     energies = []
     begin = time.process_time()
     for _ in range(20):
@@ -90,12 +90,12 @@ def rest(setting: Setting, segments: int) -> Iterator[tuple[str, float, str]]:
         energies.append(rig.kinetic_energy())
     yield "rest, real-time factor", 2.0 / (time.process_time() - begin), "1"
     yield "greatest kinetic energy at rest", 1e6 * max(energies), "uJ"
-    drift = max(float(np.linalg.norm(rig.nodes(k).mean(axis=0) - p)) for k, p in enumerate(places))
+    drift = max(float(np.linalg.norm(rig.nodes(k).mean(axis=0) - p)) for k, p in enumerate(starts))
     yield "drift in 2 s", 1e3 * drift, "mm"
 
 
 def pile(setting: Setting, segments: int) -> Iterator[tuple[str, float, str]]:
-    """Three pieces on each other in the drum."""
+    """Three clothes on each other in the drum."""
     order = ("tshirt", "towel", "sock")
     shapes = [make_shape(k, segments=segments if k == "towel" else 0) for k in order]
     heights, yaws = (0.36, 0.46, 0.54), (0.4, 0.1, 1.2)
@@ -135,8 +135,10 @@ def main() -> None:
         print(f"{group}: {name} done", flush=True)
     if arguments.only in "half step":
         for kind in KINDS:
-            for what, soft in (("soft", True), ("rigid", False)):
-                rows.append(Row("half step", f"{what} {kind}", "ends apart", 1e3 * apart(kind, soft=soft), "mm"))
+            for what, deformable in (("soft", True), ("rigid", False)):
+                rows.append(
+                    Row("half step", f"{what} {kind}", "ends apart", 1e3 * apart(kind, deformable=deformable), "mm")
+                )
                 print(f"half step: {what} {kind} done", flush=True)
     print_table(rows)
     write_csv(arguments.output, rows)

@@ -19,12 +19,12 @@ import numpy as np
 from pydrake.systems.framework import Context
 
 from benchmarks.table import Row, print_table, write_csv
-from diagrams.deformable.items import soft_positions
+from diagrams.deformable.items import deformable_positions
 from diagrams.geometry.contacts import collision_shapes, each_contact
 from diagrams.scenario import load_scenario, with_items
 from diagrams.scene.scene import RigidItem
 from diagrams.shared_autonomy import SharedAutonomy, build_shared_autonomy
-from diagrams.station.sleeping_item import make_piece
+from diagrams.station.sleeping_item import make_sleeping_item
 from geosacs_drake.prepare_canal import prepare_canal
 from geosacs_drake.results.summary import RunResult, summarize
 from geosacs_drake.run_options import RunOptions
@@ -33,7 +33,7 @@ from geosacs_drake.simulate import simulate
 TICK_S = 0.01
 HALF_S = 0.5
 LIFTED_M = 0.10
-"""Rise after which a thing hangs in the hand as it will be carried."""
+"""Rise after which an item hangs in the hand as it will be carried."""
 NEAREST = 5
 """Nodes of cloth, those next to the TCP, whose mean tells the slip."""
 
@@ -47,14 +47,14 @@ class Watch:
         self._spent, self._since = 0.0, time.process_time()
         plant, scene = system.station.plant, system.station.scene
         self._hand = set(collision_shapes(plant, [scene.lio]))
-        self._pieces = [make_piece(plant, system.station.scene_graph, item) for item in scene.items]
+        self._sleepers = [make_sleeping_item(plant, system.station.scene_graph, item) for item in scene.items]
         self._set_down = False
         self._at_grip: tuple[float, list[float]] | None = None
         self._held: tuple[int, np.ndarray, np.ndarray] | None = None
         self.penetration: list[float] = []
         """[m], at every tick."""
         self.slip: dict[str, float] = {}
-        """Greatest of each thing in a carry, until it is set down [m]."""
+        """Greatest of each item in a carry, until it is set down [m]."""
         self.factors: list[float] = []
         """Simulated over processor time, of each half second."""
 
@@ -97,7 +97,7 @@ class Watch:
         if self._held is None:
             return
         k, before, near = self._held
-        self._set_down |= self._borne(plant_context, k) > self._pieces[k].weight / 2
+        self._set_down |= self._borne(plant_context, k) > self._sleepers[k].weight / 2
         if not self._set_down:
             moved = clouds[k][near].mean(axis=0) - before
             slip = float(np.hypot(moved[0], moved[2]))  # along the pads; y is how they squeeze
@@ -105,9 +105,9 @@ class Watch:
             self.slip[name] = max(slip, self.slip.get(name, 0.0))
 
     def _borne(self, plant_context: Context, k: int) -> float:
-        """How much of thing k lies on anything but the robot [N]."""
+        """How much of item k lies on anything but the robot [N]."""
         results = self._system.station.plant.get_contact_results_output_port().Eval(plant_context)
-        upwards, own = 0.0, self._pieces[k].own
+        upwards, own = 0.0, self._sleepers[k].own
         for a, b, force in each_contact(results):
             if a in own and b not in self._hand:
                 upwards += force[2]
@@ -116,12 +116,12 @@ class Watch:
         return upwards
 
     def _points(self, plant_context: Context, k: int, X_WT: Any) -> np.ndarray:
-        """Of thing k in the tool's frame [m]: its nodes, or the origin of a rigid one. Shape (n, 3)."""
+        """Of item k in the tool's frame [m]: its nodes, or the origin of a rigid one. Shape (n, 3)."""
         plant, item = self._system.station.plant, self._system.station.scene.items[k]
         if isinstance(item, RigidItem):
             points = plant.EvalBodyPoseInWorld(plant_context, item.body).translation()[None]
         else:
-            points = soft_positions(plant, plant_context, item)
+            points = deformable_positions(plant, plant_context, item)
         return X_WT.inverse().multiply(points.T).T
 
 

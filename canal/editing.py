@@ -222,15 +222,15 @@ def rebuild(
     if learned.n_disks is not None:
         learned = replace(learned, n_disks=max(3, round(learned.n_disks * share) // 2 * 2 + 1))
     at = uniform_in_arc(mean, learned.n_disks or disk_count(u_arc[1][-1]), u_arc)
-    place = np.interp(at, u, np.arange(m, dtype=float))
+    position = np.interp(at, u, np.arange(m, dtype=float))
     return build_surface(
         np.stack([curve(at) for curve in curves]),
-        np.stack([_unit(sample(turned, place)) for turned in quaternions]),
+        np.stack([_unit(sample(turned, position)) for turned in quaternions]),
         tangents=unit_tangents(mean(at, 1)),
         moving_time_s=moving_time_s,
         options=learned,
         raw=raw,
-        widening=np.interp(place, np.arange(m), beyond),
+        widening=np.interp(position, np.arange(m), beyond),
     )
 
 

@@ -49,7 +49,7 @@ def write_and_rename(path: Path, write: Callable[[BinaryIO], object]) -> None:
         else:
             _write_in_place(path, status, write)
     except OSError as error:
-        raise InputError(f"{path}: cannot be written ({_reason(error)}); choose another place") from None
+        raise InputError(f"{path}: cannot be written ({_reason(error)}); choose another path") from None
 
 
 def check_output(path: Path) -> None:
@@ -66,7 +66,7 @@ def check_output(path: Path) -> None:
         if stat.S_ISBLK(mode) or stat.S_ISSOCK(mode):
             raise InputError(f"{path}: is a {'disk' if stat.S_ISBLK(mode) else 'socket'}; give a file or a pipe")
         if status is not None and not os.access(path, os.W_OK):
-            raise InputError(f"{path}: is write-protected; choose another place")
+            raise InputError(f"{path}: is write-protected; choose another path")
         if status is None or stat.S_ISREG(mode):
             folder = _target(path).parent
             if not folder.is_dir():
@@ -77,7 +77,7 @@ def check_output(path: Path) -> None:
                 os.close(handle)
                 temporary.unlink()
     except OSError as error:
-        raise InputError(f"{path}: cannot be written ({_reason(error)}); choose another place") from None
+        raise InputError(f"{path}: cannot be written ({_reason(error)}); choose another path") from None
 
 
 def identity(path: Path) -> object:

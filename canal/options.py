@@ -6,7 +6,8 @@ import dataclasses
 import reprlib
 import textwrap
 import typing
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
+from types import MappingProxyType
 from typing import Annotated, Any, cast, dataclass_transform
 
 import pydantic
@@ -67,12 +68,13 @@ def options[T: type](where: str = "", *, frozen: bool = False) -> Callable[[T], 
     return decorate
 
 
-def read_options[T](schema: type[T], value: object) -> T:
+def read_options[T](schema: type[T], value: object, renamed: Mapping[str, str] = MappingProxyType({})) -> T:
     """Make options from plain data, as YAML gives it.
 
     Args:
         schema: a class made by `options`.
         value: a mapping of its fields.
+        renamed: keys of earlier versions, and what they are called now.
 
     Raises:
         InputError: a key is unknown, or a value cannot be used; names the key, the value and what belongs there.
@@ -80,16 +82,19 @@ def read_options[T](schema: type[T], value: object) -> T:
     try:
         return pydantic.TypeAdapter(schema).validate_python(value)
     except pydantic.ValidationError as error:
-        raise InputError(describe(error, schema, "")) from None
+        raise InputError(describe(error, schema, "", renamed)) from None
 
 
-def describe(error: pydantic.ValidationError, schema: type, where: str) -> str:
-    """The first thing that is wrong, in one line.
+def describe(
+    error: pydantic.ValidationError, schema: type, where: str, renamed: Mapping[str, str] = MappingProxyType({})
+) -> str:
+    """The first fault, in one line.
 
     Args:
         error: of pydantic.
         schema: the dataclass that was to be made, whose fields are listed where a key is unknown.
         where: the key that holds it.
+        renamed: keys of earlier versions, and what they are called now.
     """
     first = error.errors(include_url=False)[0]
     kind, context = first["type"], first.get("ctx", {})
@@ -99,7 +104,10 @@ def describe(error: pydantic.ValidationError, schema: type, where: str) -> str:
         path[0] = names[path[0]]
     key = _key(where, path)
     if kind in ("unexpected_keyword_argument", "extra_forbidden"):
-        return f"{key} is not known; use {', '.join(_field_names(schema, path[:-1]))}"
+        known = _field_names(schema, path[:-1])
+        if path and renamed.get(str(path[-1])) in known:
+            return f"{key} is now called {renamed[str(path[-1])]}; write that"
+        return f"{key} is not known; use {', '.join(known)}"
     if kind in ("missing", "missing_argument"):
         return f"{key} is missing; give it"
     value = f"{key or 'the document'} is {short(first['input'])}"

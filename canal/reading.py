@@ -108,8 +108,8 @@ def _read_array(archive: zipfile.ZipFile, info: zipfile.ZipInfo, label: str) -> 
         raise InputError(f"{label} is encrypted; save it without a password")
     content = bytearray()
     with archive.open(info) as member:
-        while piece := member.read(_CHUNK.get(info.compress_type, _SMALL_CHUNK)):
-            content += piece
+        while chunk := member.read(_CHUNK.get(info.compress_type, _SMALL_CHUNK)):
+            content += chunk
     stream = io.BytesIO(content)
     version = np.lib.format.read_magic(stream)
     read_header = np.lib.format.read_array_header_1_0 if version == (1, 0) else np.lib.format.read_array_header_2_0

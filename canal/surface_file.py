@@ -37,7 +37,7 @@ KEYS = (*SHAPES, *OPTIONAL_SHAPES, *SCALARS, *TEXTS)
 """Of a canal file."""
 TOLERANCE = 1e-4  # of unit length and right angles: files of single floats have 1e-7
 FURTHEST_M = 100.0  # no arm's canal is so long, or so far from its base
-SHORTEST_M = 1e-4  # below this all disks are in one place
+SHORTEST_M = 1e-4  # below this all disks coincide
 HEAVIEST = 1e6  # an orientation weight beyond this leaves the position nothing: w_p is 100
 _UNIT = ("tangents", "normals", "x_axes", "y_axes", "orientations", "demonstration_orientations")
 _AGAIN = "make the file again with learn -o"

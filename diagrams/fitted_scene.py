@@ -1,7 +1,7 @@
 """A relocation's scene, fitted to a canal that somebody has shown: tables, starts and marks where its ends are.
 
-Tables stand under both ends of the canal, so high that the gripper closes on things as it does in the shipped
-relocation. Things start anywhere on the pick disk, and their marks lie anywhere on the place disk, as far as the arm
+Tables stand under both ends of the canal, so high that the gripper closes on items as it does in the shipped
+relocation. Items start anywhere on the pick disk, and their marks lie anywhere on the place disk, as far as the arm
 reaches, the table bears them and the gripper keeps its height above the table.
 """
 
@@ -25,7 +25,7 @@ from diagrams.scene.fitted_table import FittedTable, fit_tables
 from diagrams.scene.layout import draw_layout, hand_above
 from diagrams.scene.open_gripper import gripper_depth, lean, opens_towards, tool_axes
 from diagrams.scene.way_down import MOST_LEAN, room_at
-from diagrams.scene.world import Item, Region, Robot, Room, Thing
+from diagrams.scene.world import Fixture, Item, Region, Robot, Room
 from diagrams.station.lio_station import START_POSTURE
 
 GRIP_HEIGHT = 0.040
@@ -40,20 +40,20 @@ BELOW_ENDS = 0.002
 MOST_RISE = 0.012
 """How far a point of the disk may lie above or below its centre [m], for the gripper to close on what stands there."""
 RIM_SHARE = 0.95
-"""Part of a disk's reach that things may lie in: at its very rim a thumb could correct to one side alone."""
-WIDEST_THING = 0.036
+"""Part of a disk's reach that items may lie in: at its very rim a thumb could correct to one side alone."""
+WIDEST_ITEM = 0.036
 """Radius of the cup, which is set down on its edge where the gripper leans otherwise than at the grip [m]."""
 SET_DOWN = 0.001
-"""From this high above the table things are let go [m]."""
+"""From this high above the table items are let go [m]."""
 YAW_RANGE_DEG = 15.0
 """Flat sides and handles may be turned by this much from where they suit the fingers."""
 LEAST_HEIGHT = 0.03
 """Of a table: as thick as its board [m]."""
 MOST_SIDEWAYS = 0.035
-"""[m] How far the gripper may be off a thing, the way its fingers open, when it is 0.05 above where it closes: its tips
+"""[m] How far the gripper may be off an item, the way its fingers open, when it is 0.05 above where it closes: its tips
 pass the rim of the cup, open by 0.070 to each side, where the cup measures 0.036."""
 BEYOND = (0.0, 0.008, 0.015)
-"""[m] How far past what the gripper's centre reaches things may lie where a disk is small: fingers open 0.055 to each
+"""[m] How far past what the gripper's centre reaches items may lie where a disk is small: fingers open 0.055 to each
 side, and marks are met within 0.03."""
 LEAST_FOLLOWED = 0.95
 """Of the directrix, for a canal to be within the arm's reach."""
@@ -117,14 +117,14 @@ def fit_scene(canal: CanalSurface, template: Scenario, solver: IkSolver) -> Fitt
         regions[name] = region
         radius = 1e3 * float(canal.radii[report.disks[row]])
         if share < 0.995:
-            what = "things start" if name == "pick" else "marks lie"
+            what = "items start" if name == "pick" else "marks lie"
             lines.append(f"{100 * share:.0f} % of the {name} disk (radius {radius:.0f} mm) can be used: {what} there")
     scenario = replace(
         template,
         robot=Robot(),
-        things=[
-            Thing("floor", "floor"),
-            *(Thing("table", "table_any_height", [*t.center, tops[n]], t.yaw_deg) for n, t in tables.items()),
+        fixtures=[
+            Fixture("floor", "floor"),
+            *(Fixture("table", "table_any_height", [*t.center, tops[n]], t.yaw_deg) for n, t in tables.items()),
         ],
         items=[_item(item, canal, regions) for item in template.items],
         item_spacing=SPACING,
@@ -132,17 +132,17 @@ def fit_scene(canal: CanalSurface, template: Scenario, solver: IkSolver) -> Fitt
     )
     scenario, beyond = _what_fits(scenario)
     if beyond > 0.0:
-        lines.append(f"the disks are small: things lie up to {1e3 * beyond:.0f} mm past where the gripper reaches")
+        lines.append(f"the disks are small: items lie up to {1e3 * beyond:.0f} mm past where the gripper reaches")
     dropped = [item.name for item in template.items[len(scenario.items) :]]
     if dropped:
         lines.append(
-            f"there is room for {len(scenario.items)} of {len(template.items)} things, not for {', '.join(dropped)}"
+            f"there is room for {len(scenario.items)} of {len(template.items)} items, not for {', '.join(dropped)}"
         )
     return FittedScene(scenario, canal, lines)
 
 
 SPACING = 0.085
-"""[m] Between the middles of two things: they do not touch. What the fingers need is more, and has a direction."""
+"""[m] Between the middles of two items: they do not touch. What the fingers need is more, and has a direction."""
 
 
 def _grip_height(canal: CanalSurface, name: str, disk: int) -> float:
@@ -164,14 +164,14 @@ def _grip_height(canal: CanalSurface, name: str, disk: int) -> float:
 
 
 def _set_down_drop(canal: CanalSurface) -> float:
-    """How much lower than gripped a thing is set down [m]: by its edge, where the gripper leans otherwise."""
+    """How much lower than gripped an item is set down [m]: by its edge, where the gripper leans otherwise."""
     up_pick, up_place = (tool_axes(q)[2] for q in canal.orientations[[0, -1]])  # the vertical, seen from the tool
     leans = math.acos(min(1.0, float(up_pick @ up_place)))
-    return SET_DOWN + WIDEST_THING * math.sin(leans) - GRIP_HEIGHT * (1.0 - math.cos(leans))
+    return SET_DOWN + WIDEST_ITEM * math.sin(leans) - GRIP_HEIGHT * (1.0 - math.cos(leans))
 
 
 def _region(canal: CanalSurface, report: ReachReport, row: int, name: str, table: FittedTable) -> tuple[Region, float]:
-    """Where things may lie at an end, and which part of the disk's area that is."""
+    """Where items may lie at an end, and which part of the disk's area that is."""
     disk = int(report.disks[row])
     center = canal.directrix[disk]
     usable = report.reached[row] & table.free
@@ -219,7 +219,7 @@ def _what_fits(scenario: Scenario) -> tuple[Scenario, float]:
     """The scenario with as many of its items as there is room for, whatever the seed; and how far past reach [m].
 
     Raises:
-        InputError: there is no place for any.
+        InputError: there is no position for any.
     """
     for count in range(len(scenario.items), 0, -1):
         for beyond in BEYOND:
@@ -230,7 +230,7 @@ def _what_fits(scenario: Scenario) -> tuple[Scenario, float]:
             except InputError:
                 continue
             return fewer, beyond
-    raise InputError("the arm reaches no place for a thing at the canal's ends; demonstrate nearer to the robot")
+    raise InputError("the arm reaches no position for an item at the canal's ends; demonstrate nearer to the robot")
 
 
 def _wider(item: Item, by: float) -> Item:

@@ -1,4 +1,4 @@
-"""The monitor: what is in its place, since when, and the end of a run with a reason (docs/method.md, 7)."""
+"""The monitor: what is placed, since when, and the end of a run with a reason (docs/method.md, 7)."""
 
 from typing import Any
 
@@ -17,7 +17,7 @@ class MonitorOptions:
     """What counts as done, and as dangerous."""
 
     rest_speed: Positive = 0.05
-    """[m/s] A thing slower than this is at rest: crumpled clothes go on breathing."""
+    """[m/s] An item slower than this is at rest: crumpled clothes go on breathing."""
     force_limit_n: Positive = 150.0
     """Contact force between robot and surroundings above which the motion stops: ISO/TS 15066's bound for transient
     contact with the back of the hand is 280 N, quasi-static 140 N; a care robot stays about the latter."""
@@ -26,7 +26,7 @@ class MonitorOptions:
 
 
 class Monitor(LeafSystem):
-    """Judges where things are; ends the run when all is done.
+    """Judges where items are; ends the run when all is done.
 
     ```
             item_poses (7 n) → ┌─────────┐
@@ -37,14 +37,14 @@ class Monitor(LeafSystem):
        person_in_charge (1)  → └─────────┘
     ```
 
-    A thing is placed while it is where it belongs, slower than `rest_speed`, and no finger touches it. Its time is when
+    An item is placed while it is where it belongs, slower than `rest_speed`, and no finger touches it. Its time is when
     it came to rest there and was free; a finger that touches it again, but does not move it, leaves that as it is.
     `person_in_charge` is optional: a person's stop, live or recorded, is a pause; the simulated operator's ends the
     run.
     """
 
     def __init__(self, *, canal: CanalSurface, goals: list[Goal], options: MonitorOptions | None = None) -> None:
-        """Judge thing i by `goals[i]`; the robot has left them where it is at `clear_phase` of `canal`."""
+        """Judge item i by `goals[i]`; the robot has left them where it is at `clear_phase` of `canal`."""
         super().__init__()
         self._canal, self._goals = canal, goals
         self._options = options or MonitorOptions()
@@ -56,11 +56,11 @@ class Monitor(LeafSystem):
         self._navigation = self.DeclareVectorInputPort("navigation_state", len(FIELD_NAMES))
         self._person = self.DeclareVectorInputPort("person_in_charge", 1)
         self._placed_times = self.DeclareDiscreteState(np.full(n, -1.0))
-        # When each thing came to rest, whether or not a finger touches it now; and whether the run has been started.
+        # When each item came to rest, whether or not a finger touches it now; and whether the run has been started.
         self._rest_times = self.DeclareDiscreteState(np.full(n, -1.0))
         self._started = self.DeclareDiscreteState(1)
         self.DeclareStateOutputPort("placed_times", self._placed_times)
-        # Where things lie changes slowly, and is dear to compute: judged as often as a person looks.
+        # Where items lie changes slowly, and is dear to compute: judged as often as a person looks.
         self.DeclarePeriodicDiscreteUpdateEvent(JUDGING_PERIOD, JUDGING_PERIOD, self._judge)
 
     @staticmethod
@@ -101,7 +101,7 @@ class Monitor(LeafSystem):
         return EventStatus.Succeeded()
 
 
-ALL_PLACED = "every thing is in its place"
+ALL_PLACED = "every item is placed"
 """The reason of a run that is done."""
 JUDGING_PERIOD = JOYSTICK_PERIOD
-"""[s] The things are judged as often as the joystick is sampled, so that no start or stop is missed."""
+"""[s] The items are judged as often as the joystick is sampled, so that no start or stop is missed."""

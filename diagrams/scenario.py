@@ -67,6 +67,10 @@ class Scenario(World):
     monitor: MonitorOptions = field(default_factory=MonitorOptions)
 
 
+RENAMED = {"things": "fixtures", "soft_start": "deformable_start", "keep_clear": "collision_avoidance"}
+"""Keys of earlier versions, and what they are called now."""
+
+
 def shipped_scenarios() -> list[str]:
     """Names of the scenarios that ship."""
     return sorted(p.stem for p in SCENARIOS.glob("*.yaml"))
@@ -85,7 +89,7 @@ def load_scenario(name: str | Path) -> Scenario:
         known = ", ".join(shipped_scenarios())
         raise InputError(f"scenario {short(str(name))} does not exist; give a YAML file or one of {known}")
     try:
-        scenario = read_options(Scenario, yaml_load(filename=str(path)))
+        scenario = read_options(Scenario, yaml_load(filename=str(path)), RENAMED)
         scenario.folder = str(path.parent)
         check_world(scenario)
         _check_canal(scenario)

@@ -15,7 +15,7 @@ from pydrake.systems.primitives import ZeroOrderHold
 from canal.navigation.joystick import JOYSTICK_PERIOD, in_step
 from canal.surface import CanalSurface
 from diagrams.announcements import Announcement, Announcer
-from diagrams.deformable.view import SoftView
+from diagrams.deformable.view import DeformableView
 from diagrams.force_alarm import ForceAlarm
 from diagrams.ik.joint_pace import at_joint_pace, unhurried
 from diagrams.ik.reachability import reach_report
@@ -88,11 +88,11 @@ def build_shared_autonomy(
     ```
 
     Args:
-        scenario: task, things, options.
+        scenario: task, world, options.
         canal: to travel, in the robot's base frame.
         operator: who holds the joystick; only `person` takes commands from the Meshcat page, which any program on this
             machine can reach.
-        seed: of where the things lie and of the simulated operator's errors.
+        seed: of where the items lie and of the simulated operator's errors.
         meshcat: where to show it; None for no pictures.
         recording: a Meshcat of its own that records it; None for no recording.
         video: film the room and the gripper's view for this file; saved by `SharedAutonomy.video`.
@@ -105,7 +105,7 @@ def build_shared_autonomy(
         choose_directions: tells of other ones while it runs; see `StickMapping`.
 
     Raises:
-        InputError: the scenario's things overlap, or the arm cannot reach the canal's home.
+        InputError: the scenario's items overlap, or the arm cannot reach the canal's home.
     """
     period = in_step(1.0 / scenario.control_rate_hz)
     builder = DiagramBuilder()
@@ -126,7 +126,7 @@ def build_shared_autonomy(
     # Each measurement is taken once a tick, before the plant's step: whoever needs it reads the same sample.
     measured: dict[str, OutputPort] = {}
     holds: list[ZeroOrderHold] = []
-    for name, every in (dict.fromkeys(MEASURED, period) | dict.fromkeys(THINGS, JOYSTICK_PERIOD)).items():
+    for name, every in (dict.fromkeys(MEASURED, period) | dict.fromkeys(ITEM_PORTS, JOYSTICK_PERIOD)).items():
         port = station.GetOutputPort(name)
         hold = builder.AddNamedSystem(f"measured_{name}", ZeroOrderHold(every, port.size()))
         builder.Connect(port, hold.get_input_port())
@@ -276,20 +276,20 @@ def build_shared_autonomy(
 
 
 def _show(builder: DiagramBuilder, station: LioStation, meshcat: Meshcat, name: str) -> None:
-    """Draw robot, things and items; `name` is `view` or `recording`."""
+    """Draw robot, fixtures and items; `name` is `view` or `recording`."""
     query = station.GetOutputPort("geometry_query")
     visualizer = builder.AddNamedSystem(f"scene_{name}", MeshcatVisualizer(meshcat, MeshcatVisualizerParams()))
     builder.Connect(query, visualizer.query_object_input_port())
-    soft = station.scene.soft_items
-    if soft:
-        soft_view = SoftView(items=soft, meshcat=meshcat, recording=name == "recording")
-        view = builder.AddNamedSystem(f"soft_{name}", soft_view)
+    deformable = station.scene.deformable_items
+    if deformable:
+        deformable_view = DeformableView(items=deformable, meshcat=meshcat, recording=name == "recording")
+        view = builder.AddNamedSystem(f"deformable_{name}", deformable_view)
         builder.Connect(query, view.GetInputPort("query_object"))
 
 
 MEASURED = ("X_BT", "gripper_state", "contact_forces", "hand_force", "touching_bodies")
 """Ports of the station that are sampled at the control rate."""
-THINGS = ("item_poses", "item_bounds")
+ITEM_PORTS = ("item_poses", "item_bounds")
 """Ports of the station that a person looks at, 20 times a second."""
 JUDGED = ("item_poses", "item_bounds", "item_speeds", "grip_forces")
 """Ports of the station that the monitor judges by."""

@@ -24,8 +24,8 @@ script = (  # from, until [s], where in the joystick vector, value
 )  # fmt: skip
 time = np.arange(0.0, 60.0, 0.05)
 joystick = np.zeros((len(time), JOYSTICK_SIZE))
-for begin, end, place, value in script:
-    joystick[(time >= begin) & (time < end), place] = value
+for begin, end, index, value in script:
+    joystick[(time >= begin) & (time < end), index] = value
 
 builder = DiagramBuilder()
 stick = RecordedJoystick.AddToBuilder(builder=builder, recording=JoystickRecording(time, joystick))

@@ -1,7 +1,7 @@
 """A retargeted run: the machine has moved, and the robot loads it all the same.
 
 In the scenario `laundry-moved` basket and machine stand 12 and 10 cm from where they were when the task was shown.
-The canal is bent to where they are now, and the whole system runs on it, with contact, until the first piece of
+The canal is bent to where they are now, and the whole system runs on it, with contact, until the first item of
 clothing is in the drum: navigator, inverse kinematics, station, and a simulated person who corrects. Grey: the canal
 as taught; blue: bent. Green: where the tool went, measured; solid blue: corrections. Right: how far the tool was from
 where it was wanted.

@@ -37,15 +37,15 @@ def furniture(scenario: Scenario) -> list[np.ndarray]:
     """Faces (4, 3) of the boxes that the tables, the basket and the machine are made of, in the robot's base frame."""
     base = Rotation.from_euler("z", scenario.robot.yaw_deg, degrees=True)
     faces = []
-    for thing in scenario.things:
-        turn = Rotation.from_euler("z", thing.yaw_deg, degrees=True)
-        for shape in ET.parse(MODELS / "world" / f"{thing.model}.sdf").iter("collision"):
+    for fixture in scenario.fixtures:
+        turn = Rotation.from_euler("z", fixture.yaw_deg, degrees=True)
+        for shape in ET.parse(MODELS / "world" / f"{fixture.model}.sdf").iter("collision"):
             size = shape.findtext("geometry/box/size")
-            if size is None or thing.name == "floor":
+            if size is None or fixture.name == "floor":
                 continue
             x, y, z, roll, pitch, yaw = map(float, (shape.findtext("pose") or "0 0 0 0 0 0").split())
             box = Rotation.from_euler("xyz", [roll, pitch, yaw]).apply(CORNERS * np.array(size.split(), dtype=float))
-            world = turn.apply(box + [x, y, z]) + thing.position
+            world = turn.apply(box + [x, y, z]) + fixture.position
             corners = base.inv().apply(world - scenario.robot.position)
             faces += [corners[list(face)] for face in FACES]
     return faces

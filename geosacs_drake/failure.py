@@ -6,20 +6,20 @@ from pydrake.systems.framework import Context
 
 from canal.navigation import Leg, NavigationState
 from diagrams.shared_autonomy import SharedAutonomy
-from diagrams.station.sleep import Rest
+from diagrams.station.sleep import SleepManager
 
 
-def describe_failure(error: BaseException, system: SharedAutonomy, rest: Rest, root: Context) -> str:
+def describe_failure(error: BaseException, system: SharedAutonomy, sleep: SleepManager, root: Context) -> str:
     """One line without the library's own words, which the summary has under `failure`.
 
     Args:
         error: what was raised.
         system: the run's diagram.
-        rest: what sleeps in it.
+        sleep: what sleeps in it.
         root: the diagram's context, as it was then.
     """
     try:
-        state = _state(system, rest, root)
+        state = _state(system, sleep, root)
     except (RuntimeError, ValueError, SystemExit):  # of Drake, asked about a state that is none
         state = "in a state of which nothing can be computed"
     return f"{_what(error)} at {root.get_time():.3f} s ({state})"
@@ -36,7 +36,7 @@ def _what(error: BaseException) -> str:
     return f"a step of the simulation failed ({type(error).__name__})"
 
 
-def _state(system: SharedAutonomy, rest: Rest, root: Context) -> str:
+def _state(system: SharedAutonomy, sleep: SleepManager, root: Context) -> str:
     """Where the robot was, in which state, with what in the hand, and what was being simulated."""
     context = system.navigator.GetMyContextFromRoot(root)
     navigation = NavigationState.from_vector(system.navigator.GetOutputPort("navigation_state").Eval(context))
@@ -48,7 +48,7 @@ def _state(system: SharedAutonomy, rest: Rest, root: Context) -> str:
         doing = "not running"
     gripper = "closed" if navigation.gripper_closed else "open"
     held = _in_hand(system, root)
-    awake = rest.names_awake(root)
+    awake = sleep.names_awake(root)
     return (
         f"leg {Leg(int(navigation.leg)).name.lower()}, disk {navigation.disk:.1f}, {doing}, gripper {gripper}, "
         f"in the hand: {', '.join(held) or 'nothing'}, awake: {', '.join(awake) or 'nothing'}"

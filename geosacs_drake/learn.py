@@ -23,7 +23,7 @@ from geosacs_drake.process.interrupts import Interrupts
 from geosacs_drake.process.outputs import Output, check_outputs, say_failures, write_each
 
 POINTS_UP = math.sin(math.radians(20.0))
-"""Height of the gripper's axis from which on it is said; things are gripped from above or from the side."""
+"""Height of the gripper's axis from which on it is said; items are gripped from above or from the side."""
 _N_STAGES = 4
 PICTURES = (".png", ".pdf", ".svg")
 

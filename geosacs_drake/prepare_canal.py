@@ -18,7 +18,7 @@ from canal.surface import CanalSurface
 from canal.surface_file import load_canal
 from diagrams.fitted_scene import fit_scene
 from diagrams.scenario import Retarget, Scenario
-from diagrams.scene.leads_to import check_leads_to_things
+from diagrams.scene.leads_to import check_leads_to_items
 from diagrams.station.lio_ik import make_lio_solver
 from geosacs_drake.run_options import RunOptions
 from models import MODELS
@@ -34,7 +34,7 @@ def prepare_task(scenario: Scenario, options: RunOptions) -> tuple[Scenario, Can
         options: of the run.
 
     Raises:
-        InputError: a file cannot be used, or the canal does not lead to the scenario's things.
+        InputError: a file cannot be used, or the canal does not lead to the scenario's items.
     """
     if (options.canal or options.demos) and not options.scenario and scenario.task == "relocation":
         template = replace(scenario, support_planes=[], retarget=Retarget())
@@ -43,7 +43,7 @@ def prepare_task(scenario: Scenario, options: RunOptions) -> tuple[Scenario, Can
             print(line, file=sys.stderr)
         return fitted.scenario, fitted.canal
     canal = prepare_canal(scenario, options)
-    check_leads_to_things(scenario, canal, options.seed or 0)
+    check_leads_to_items(scenario, canal, options.seed or 0)
     return scenario, canal
 
 

@@ -18,7 +18,7 @@ from canal.options import options, read_options
 from canal.reading import read_npz
 from canal.surface import CanalSurface
 from canal.surface_file import KEYS, canal_arrays, canal_of
-from diagrams.scenario import Scenario
+from diagrams.scenario import RENAMED, Scenario
 from diagrams.scene.world import check_world
 from geosacs_drake.results.summary import RunResult
 from geosacs_drake.run_options import PEOPLE, RunOptions
@@ -121,7 +121,7 @@ def load_origin(operator: str) -> Origin | None:
     if text.shape != () or text.dtype.kind != "U":
         raise InputError(f"{operator}: its metadata is no text; give {_WHAT}")
     try:
-        metadata = read_options(Metadata, json.loads(str(text[()])))
+        metadata = read_options(Metadata, json.loads(str(text[()])), RENAMED)
     except (ValueError, RecursionError) as error:
         reason = error if isinstance(error, InputError) else "its metadata is no JSON"
         raise InputError(f"{operator}: {reason}; give {_WHAT}") from None

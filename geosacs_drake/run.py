@@ -197,5 +197,5 @@ class _Bar:
 
     def show(self, progress: Progress) -> None:
         """Show how far the run is."""
-        self._bar.set_description_str(f"{progress.placed} of {progress.things} placed", refresh=False)
+        self._bar.set_description_str(f"{progress.placed} of {progress.items} placed", refresh=False)
         self._bar.update(progress.time_s - self._bar.n)

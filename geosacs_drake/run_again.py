@@ -6,7 +6,7 @@ import os
 import sys
 from typing import NoReturn
 
-_PLACE = "GEOSACS_CONSOLE"
+_ADDRESS = "GEOSACS_CONSOLE"
 
 
 def run_again(port: int, token: str) -> NoReturn:
@@ -18,11 +18,11 @@ def run_again(port: int, token: str) -> NoReturn:
     """
     sys.stdout.flush()
     sys.stderr.flush()
-    os.environ[_PLACE] = f"{port} {token}"
+    os.environ[_ADDRESS] = f"{port} {token}"
     os.execv(sys.executable, [sys.executable, *sys.orig_argv[1:]])
 
 
-def earlier_place() -> tuple[int, str] | None:
+def earlier_address() -> tuple[int, str] | None:
     """Port and token of the run that this one follows; None where it is the first."""
-    port, _, token = os.environ.pop(_PLACE, "").partition(" ")
+    port, _, token = os.environ.pop(_ADDRESS, "").partition(" ")
     return (int(port), token) if port.isdecimal() and token else None

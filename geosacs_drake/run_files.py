@@ -60,7 +60,7 @@ def inputs_of(options: RunOptions, scenario: Scenario) -> Iterator[Path]:
     for name in (*scenario.demonstrations, *([] if scenario.canal is None else [scenario.canal])):
         with suppress(InputError):  # of a log that is replayed: it needs them no more
             yield scenario.resolve(name, MODELS / "demonstrations")
-    for models, folder in ((scenario.things, "world"), (scenario.items, "items")):
+    for models, folder in ((scenario.fixtures, "world"), (scenario.items, "items")):
         for model in models:
             yield scenario.resolve(model.model, MODELS / folder, ".sdf")
 

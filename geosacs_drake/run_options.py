@@ -14,7 +14,7 @@ PEOPLE = ("gamepad", "keyboard", "person")
 
 @options(COMMAND_LINE, frozen=True)
 class RunOptions:
-    """Load a washing machine, or move things from table to table, by shared autonomy on a canal."""
+    """Load a washing machine, or move items from table to table, by shared autonomy on a canal."""
 
     operator: str = "simulated"
     """simulated, a person at the page (gamepad, keyboard or person: each means all of its controls), or a file with a
@@ -25,7 +25,7 @@ class RunOptions:
     realtime_rate: Annotated[float, Field(ge=0, lt=1e6)] | None = None
     """Simulated over real time; 0 for as fast as possible. Default: 1 in a browser, 0 headless."""
     seed: Annotated[int, Field(ge=0, lt=2**63)] | None = None
-    """Draws where things lie, and the simulated operator's errors. Default: 0, or that of the log that is replayed."""
+    """Draws where items lie, and the simulated operator's errors. Default: 0, or that of the log that is replayed."""
     duration: Annotated[float, Field(gt=0, lt=1e6)] | None = None
     """Longest simulated time [s]; what is not done by then is not done. Default: 900, or that of the log."""
     items: Literal["soft", "rigid"] | None = None

@@ -14,7 +14,7 @@ from pydrake.systems.framework import Context, EventStatus
 
 from diagrams.scene.scene import RigidItem
 from diagrams.shared_autonomy import SharedAutonomy
-from diagrams.station.sleep import rest_of
+from diagrams.station.sleep import sleep_manager
 from geosacs_drake.failure import describe_failure
 from geosacs_drake.process.command_line import one_line
 from geosacs_drake.results.summary import RunResult
@@ -31,7 +31,7 @@ class Progress:
 
     time_s: float
     placed: int
-    things: int
+    items: int
 
 
 def simulate(
@@ -70,15 +70,15 @@ def simulate(
     """
     simulator = Simulator(system.diagram)
     simulator.set_target_realtime_rate(rate)
-    rest = rest_of(system.station)
+    sleep = sleep_manager(system.station)
 
-    def rest_and_watch(root_context: Context) -> EventStatus:
+    def sleep_and_watch(root_context: Context) -> EventStatus:
         system.peaks.look(root_context)
-        status = rest(root_context)
+        status = sleep(root_context)
         watch(root_context)
         return EventStatus.ReachedTermination(system.diagram, INTERRUPTED) if asked_to_end() else status
 
-    simulator.set_monitor(rest_and_watch)
+    simulator.set_monitor(sleep_and_watch)
     root = simulator.get_context()
     monitor_context = system.monitor.GetMyContextFromRoot(root)
     factors: list[float] = []
@@ -102,7 +102,7 @@ def simulate(
                 reason = status.message()
                 break
     except (Exception, SystemExit) as error:  # Drake says `SystemExit` where a condition of its own does not hold
-        reason, failure = describe_failure(error, system, rest, root), one_line(str(error)) or type(error).__name__
+        reason, failure = describe_failure(error, system, sleep, root), one_line(str(error)) or type(error).__name__
     finally:
         # Or all that was built for this run would stay for ever: the monitor names the diagram, which keeps it.
         simulator.clear_monitor()

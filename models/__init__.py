@@ -1,4 +1,4 @@
-"""Data that ships with the project: robot, machine, things, demonstrations, scenarios."""
+"""Data that ships with the project: robot, machine, items, demonstrations, scenarios."""
 
 from pathlib import Path
 

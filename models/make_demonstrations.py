@@ -50,7 +50,7 @@ class Task:
     keys: Sequence[Key]
     aside: tuple[tuple[float, float, float], tuple[float, float, float]]
     moving_time: float = 26.5
-    """Of a pass, pauses apart [s]: three things, home-pick-home-place-home, then take 140 s, as in the paper."""
+    """Of a pass, pauses apart [s]: three items, home-pick-home-place-home, then take 140 s, as in the paper."""
 
 
 @dataclass(frozen=True)
@@ -91,7 +91,7 @@ LAUNDRY = Task(
         Key((0.024, 0.628, 0.552), 125, 43, 0.01, 2, 0.25),
         Key((-0.007, 0.673, 0.532), 125, 42, 0.011, 1.5, 0.15),
         # Inside it is lowered, so that what is let go falls less deep. The hands part as far as the door lets the
-        # gripper, so that things can be laid side by side.
+        # gripper, so that items can be laid side by side.
         Key((-0.050, 0.734, 0.480), 125, 41, 0.045, 1.5, 0.15),
         Key((-0.084, 0.783, 0.422), 125, 40, 0.085, 1.5, 0.15),
     ],
@@ -118,7 +118,7 @@ RELOCATION = Task(
 )
 
 # As people show it who take the robot by its hand: the gripper leans by 17-20° where it grips, the hands come from and
-# go to places one behind the other, 0.28 m apart, turn it up to 26° otherwise, and all but meet past the middle.
+# go to positions one behind the other, 0.28 m apart, turn it up to 26° otherwise, and all but meet past the middle.
 TABLES = Task(
     "tables",
     [

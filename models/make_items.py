@@ -1,4 +1,4 @@
-"""Write the things to carry: apple, cup, cube, and clothes bundled so tightly that they are rigid.
+"""Write the items to carry: apple, cup, cube, and clothes bundled so tightly that they are rigid.
 
 Run `python -m models.make_items`. Origin in the middle, which is the centre of mass; long side along x, standing on -z.
 """

@@ -89,7 +89,7 @@ def pad(side: float) -> Mesh:
 def pad_hull() -> Mesh:
     """The pad's box, to touch: as a hull it has two tetrahedra a face, as a box five, each a contact point at least.
 
-    A third fewer contact points hold a thing as well, and a step with a thing in the hand takes a sixth less time.
+    A third fewer contact points hold an item as well, and a step with an item in the hand takes a sixth less time.
     """
     corners = np.array([0.03, 0.018, 0.06]) / 2 * [(x, y, z) for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)]
     return Mesh(corners, ConvexHull(corners).simplices).outward()

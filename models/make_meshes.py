@@ -113,8 +113,8 @@ def main() -> None:
     for name, opening in (("washing_machine", 0.17), ("washing_machine_narrow", 0.15)):
         for part in (case, ring, gasket, door, glass):
             write_obj(HERE / f"{name}_{part.__name__}.obj", part(opening))
-    for piece in (drum, drum_holes, drum_ribs):
-        write_obj(HERE / f"{piece.__name__}.obj", piece())
+    for drawn in (drum, drum_holes, drum_ribs):
+        write_obj(HERE / f"{drawn.__name__}.obj", drawn())
 
 
 if __name__ == "__main__":

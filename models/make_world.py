@@ -1,7 +1,7 @@
 """Write the furniture: washing machines, basket, tables, marks.
 
-Run `python -m models.make_world`. Every piece is welded to the world where a scenario says; its origin is on the floor
-(or on the table, for basket and mark), its front looks along -y. Surroundings are compliant, things to carry stiff.
+Run `python -m models.make_world`. Every fixture is welded to the world where a scenario says; its origin is on
+the floor (or on the table, for basket and mark), its front looks along -y. Fixtures are compliant, items stiff.
 """
 
 from __future__ import annotations

@@ -107,7 +107,7 @@ def write_obj(path: Path, mesh: Mesh, digits: int = 5) -> None:
     keep = size > 1e-12
     t, area, size = t[keep], area[keep], size[keep]
     unit = area / size[:, None]
-    # Vertices in one place count as one, or a seam would show.
+    # Vertices that coincide count as one, or a seam would show.
     _, same = np.unique(np.round(v, 6), axis=0, return_inverse=True)
     around: dict[int, list[int]] = {}
     for face, corners in enumerate(same.ravel()[t]):

@@ -1,4 +1,4 @@
-"""Writing SDFormat: the few elements that the things here are made of."""
+"""Writing SDFormat: the few elements that the models here are made of."""
 
 from __future__ import annotations
 

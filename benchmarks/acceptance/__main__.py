@@ -41,8 +41,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
         print(f"{len(flat)} runs, {1 if alone else options.jobs} at a time", flush=True)
         folder = options.output.parent / "acceptance"
         found = run_jobs(flat, at_a_time=1 if alone else options.jobs, folder=folder, report=_Progress(len(flat)))
-        places = iter(range(len(flat)))
-        results |= {id(c): [found[next(places)] for _ in jobs[id(c)]] for c in some}
+        indices = iter(range(len(flat)))
+        results |= {id(c): [found[next(indices)] for _ in jobs[id(c)]] for c in some}
     rows = [row for c in checks for row in _rows(c, results[id(c)])]
     minutes = (time.monotonic() - begin) / 60
     if not options.only and not options.quick:

@@ -38,7 +38,7 @@ WALL = """<sdf version="1.9"><model name="wall"><link name="wall"><collision nam
 def idle(scenario: str, state: str, seconds: float) -> Figures:
     """Simulate a scenario in which nobody does more than bring it into `state`."""
     with empty_folder() as folder:
-        system, things = _build(scenario, state, folder)
+        system, items = _build(scenario, state, folder)
     memory: list[int] = []
     clock: list[tuple[float, float]] = []
 
@@ -47,7 +47,7 @@ def idle(scenario: str, state: str, seconds: float) -> Figures:
             clock.append((root.get_time(), time.process_time()))
             memory.append(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss)
 
-    result = simulate(system, task="idle", seed=0, item_names=things, duration=seconds, watch=watch)
+    result = simulate(system, task="idle", seed=0, item_names=items, duration=seconds, watch=watch)
     signals = result.signals
     late = signals["time"] >= SETTLED
     print(result.reason, signals["time"][-1], memory, dict(zip(result.contact_pairs, result.peak_forces, strict=True)))
@@ -66,7 +66,7 @@ def idle(scenario: str, state: str, seconds: float) -> Figures:
 
 
 def _build(scenario: str, state: str, folder: Path):
-    """The system of a run with a recorded thumb, and its things' names."""
+    """The system of a run with a recorded thumb, and its items' names."""
     demos: tuple[Path, ...] = ()
     name: str | Path = scenario
     if scenario == "recorded":
@@ -87,9 +87,9 @@ def _with_wall(name: str, folder: Path) -> Path:
     canal = prepare_canal(spec, RunOptions(headless=True))
     x, y, z = canal.directrix[canal.home_disk // 2] - [0.0, 0.0, 0.05]
     (folder / "wall.sdf").write_text(WALL)
-    thing = f"things:\n  - {{name: wall, model: wall.sdf, position: [{x:.3f}, {y:.3f}, {z:.3f}]}}\n"
+    fixture = f"fixtures:\n  - {{name: wall, model: wall.sdf, position: [{x:.3f}, {y:.3f}, {z:.3f}]}}\n"
     text = (SCENARIOS / f"{name}.yaml").read_text()
-    (folder / "walled.yaml").write_text(text.replace("things:\n", thing, 1) + "monitor: {force_limit_n: 30}\n")
+    (folder / "walled.yaml").write_text(text.replace("fixtures:\n", fixture, 1) + "monitor: {force_limit_n: 30}\n")
     return folder / "walled.yaml"
 
 

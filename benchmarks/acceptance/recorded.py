@@ -17,7 +17,7 @@ MINUTES = 0.4
 HELD_BACK = range(7100, 7124)
 """Seeds of the tests' generator that no test looks at: 20 pairs within reach, and some that are not."""
 WITHIN_REACH = 20
-THINGS = ["apple", "cube", "cup"]
+ITEMS = ["apple", "cube", "cup"]
 _RUNS = (
     Worst("disks of the canal that were not travelled", "left out", at_most(1.0)),
     Worst("surroundings", "surroundings", at_most(140, "N")),
@@ -34,7 +34,7 @@ def recorded_pair(seed: int) -> Figures:
 
 
 def generated_pair(seed: int) -> Figures:
-    """Two demonstrations as a person leads the robot's hand; within reach when the run finds room for all things."""
+    """Two demonstrations as a person leads the robot's hand; within reach when the run finds room for all items."""
     with empty_folder() as folder:
         demos = [folder / f"{k}.npz" for k in (1, 2)]
         for path, demonstration in zip(demos, hard_demonstrations(seed, 2, hardness=HAND_GUIDED), strict=True):
@@ -55,8 +55,8 @@ def _carried(demos: Sequence[Path], seed: int) -> Figures:
     print(summary)
     placed = [item["name"] for item in summary["items"] if item["placed"]]
     return {
-        "success": float(ended.status == 0 and sorted(placed) == THINGS),
-        "within reach": float(len(summary["items"]) == len(THINGS)),
+        "success": float(ended.status == 0 and sorted(placed) == ITEMS),
+        "within reach": float(len(summary["items"]) == len(ITEMS)),
         "did what it can": float(ended.status == 0 and len(placed) == len(summary["items"]) > 0),
         "left out": canal.n_disks - 1 - float(np.ptp(disk)),
         "surroundings": max(summary["max_contact_force_n"].values()),

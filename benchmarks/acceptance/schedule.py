@@ -39,7 +39,7 @@ def run_jobs(
         report: called after each job with the seconds it took and why it failed (empty: it did not).
 
     Returns:
-        Figures by the job's place in `jobs`.
+        Figures by the job's index in `jobs`.
     """
     folder.mkdir(parents=True, exist_ok=True)
     longest_first = sorted(range(len(jobs)), key=lambda k: -jobs[k].minutes)

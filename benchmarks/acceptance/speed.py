@@ -1,7 +1,7 @@
 """How fast a run is, beside bare Drake in the same process: a ratio, since machines differ and are shared.
 
-The bare scene is the same plant with the same things, the robot held by its drives, and none of our systems; nothing
-in it rests. Both are advanced in turns, half a second of the run and a tenth of the bare scene, in processor time.
+The bare scene is the same plant with the same bodies, the robot held by its drives, and none of our systems; nothing
+in it sleeps. Both are advanced in turns, half a second of the run and a tenth of the bare scene, in processor time.
 """
 
 from __future__ import annotations
@@ -30,15 +30,15 @@ LEAST = 0.95
 
 
 def bare_scene(scenario: Scenario, q0: np.ndarray) -> Simulator:
-    """The scene with the robot held where it is, things as they lie."""
+    """The scene with the robot held where it is, items as they lie."""
     builder = DiagramBuilder()
-    soft = any(item.kind == "soft" for item in scenario.items)
-    plant, scene_graph = AddMultibodyPlant(plant_config(scenario.contact.for_items(soft)), builder)
+    deformable = any(item.kind == "soft" for item in scenario.items)
+    plant, scene_graph = AddMultibodyPlant(plant_config(scenario.contact.for_items(deformable)), builder)
     scene = add_scene(plant=plant, scene_graph=scene_graph, world=scenario, seed=0, filmed=False)
     set_drives(plant, scene.lio)
     plant.set_gravity_enabled(scene.lio, False)
-    if scene.soft_items:
-        machine = scene.things.get("machine", [])
+    if scene.deformable_items:
+        machine = scene.fixtures.get("machine", [])
         prepare_for_cloth(plant=plant, scene_graph=scene_graph, robot=scene.lio, fallen_into=machine)
     plant.Finalize()
     plant.SetDefaultPositions(

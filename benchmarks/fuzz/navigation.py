@@ -171,8 +171,8 @@ def assert_not_stuck(
         if k * dt > 0.2 and state.pause_s < 0:
             break
     tries: dict[str, list[np.ndarray]] = {"nothing": []}
-    for name, place in (("gripper", 2), ("reverse", 3), ("start", 4)):
-        tries[name] = [np.eye(JOYSTICK_SIZE)[place]]
+    for name, index in (("gripper", 2), ("reverse", 3), ("start", 4)):
+        tries[name] = [np.eye(JOYSTICK_SIZE)[index]]
     tries["start, reverse"] = [*tries["start"], rest, *tries["reverse"]]
     for angle in np.arange(8) * math.pi / 4:
         push = np.concatenate([[math.cos(angle), math.sin(angle)], np.zeros(4)])

@@ -37,7 +37,7 @@ SHORTEST, LONGEST = 8.0, 25.0
 
 
 class _Watch:
-    """What is seen of the arm and the things at each step of the plant."""
+    """What is seen of the arm and the items at each step of the plant."""
 
     def __init__(self, system: SharedAutonomy) -> None:
         station = system.station
@@ -80,7 +80,7 @@ def case(seed: int) -> str:
 
 
 def _scenario(rng: np.random.Generator) -> Scenario:
-    """A shipped scenario with other options, things elsewhere, and a canal bent to another place."""
+    """A shipped scenario with other options, items elsewhere, and a canal bent to other ends."""
     scenario = load_scenario(RIGID[rng.integers(len(RIGID))])
     scenario = with_items(scenario, "soft" if rng.random() < SOFT_SHARE else "rigid")
     scenario.navigation = random_options(scenario.navigation, rng, share=0.3)
@@ -155,7 +155,7 @@ def _check(result: RunResult, watch: _Watch, canal: CanalSurface, scenario: Scen
     speeds = np.abs(np.diff(command, axis=0)).max(initial=0.0) / period
     assert speeds <= SPEED * (1 + 1e-6), f"commanded {math.degrees(speeds):.1f}°/s"
     assert watch.speed <= SPEED * 1.02, f"a joint moved at {math.degrees(watch.speed):.1f}°/s"
-    assert watch.lowest > -0.02, f"a thing fell through the floor, to {watch.lowest:.2f} m"
+    assert watch.lowest > -0.02, f"an item fell through the floor, to {watch.lowest:.2f} m"
     _check_navigation(signals["navigation_state"], canal)
     summary = summarize(result)
     assert summary["ik"]["bound_violations"] == 0, f"{summary['ik']['bound_violations']} bound violations"

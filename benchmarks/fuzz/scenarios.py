@@ -65,19 +65,19 @@ def case(seed: int) -> str:
     return "read and built"
 
 
-def _places(data: Any, path: tuple = ()) -> list[tuple]:
+def _paths(data: Any, path: tuple = ()) -> list[tuple]:
     """Where there is something to spoil, as paths of keys and indices."""
     found = [path] if path else []
     items = data.items() if isinstance(data, dict) else enumerate(data) if isinstance(data, list) else ()
     for key, value in items:
-        found += _places(value, (*path, key))
+        found += _paths(value, (*path, key))
     return found
 
 
 def _spoiled(data: Any, rng: np.random.Generator) -> Any:
     """One fault more."""
     data = copy.deepcopy(data)
-    if not isinstance(data, dict) or not (places := _places(data)):
+    if not isinstance(data, dict) or not (paths := _paths(data)):
         return data
     junk = copy.deepcopy(JUNK[rng.integers(len(JUNK))])
     kind = rng.integers(6)
@@ -90,7 +90,7 @@ def _spoiled(data: Any, rng: np.random.Generator) -> Any:
         else:
             data[key] = junk
         return data
-    path = places[rng.integers(len(places))]
+    path = paths[rng.integers(len(paths))]
     holder = data
     for key in path[:-1]:
         holder = holder[key]

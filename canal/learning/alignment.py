@@ -107,7 +107,7 @@ def sample(values: np.ndarray, at: np.ndarray) -> np.ndarray:
 
     Args:
         values: rows. Shape (M, k).
-        at: places in [0, M - 1]. Shape (P,).
+        at: positions in [0, M - 1]. Shape (P,).
 
     Returns:
         Shape (P, k).

@@ -5,7 +5,7 @@ from fractions import Fraction
 JOYSTICK_SIZE = 6
 """Joystick vector: k_x, k_y in [-1, 1], then the levels (0 or 1) of the buttons gripper, reverse, start, stop."""
 K_X, K_Y, GRIPPER, REVERSE, START, STOP = range(JOYSTICK_SIZE)
-"""Places in it: the stick along the disk's correction axes x and y, then the buttons."""
+"""Indices in it: the stick along the disk's correction axes x and y, then the buttons."""
 
 _PARTS = 3 * 3 * 5 * 5 * 7
 JOYSTICK_PERIOD = _PARTS * (round(0.05 / _PARTS * 2**57) / 2**57)

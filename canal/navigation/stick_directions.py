@@ -1,4 +1,4 @@
-"""Where a stick's right and up point on each disk of a canal, for somebody who sees it from a given place.
+"""Where a stick's right and up point on each disk of a canal, for somebody who sees it from a given position.
 
 On a disk whose plane holds a direction within 45° of the person's right, the stick's right moves the point within 45°
 of it; likewise up. On other disks (seen edge-on from the side, or lying) the plane holds no such direction: there each
@@ -145,7 +145,7 @@ def _cost(part: np.ndarray, length: np.ndarray, away: tuple[np.ndarray, np.ndarr
 
 
 def _cheapest(cost: np.ndarray) -> np.ndarray:
-    """Angles' places in the grid, disk by disk, with the least sum of costs. Shape (N,)."""
+    """Indices of angles in the grid, disk by disk, with the least sum of costs. Shape (N,)."""
     steps = np.arange(-MOST_STEPS, MOST_STEPS + 1)
     price = TURN * (steps * 2 * np.pi / ANGLES) ** 2
     reached = (np.arange(ANGLES)[None, :] + steps[:, None]) % ANGLES
@@ -155,11 +155,11 @@ def _cheapest(cost: np.ndarray) -> np.ndarray:
         best = by.argmin(axis=0)
         came[k] = reached[best, np.arange(ANGLES)]
         total = cost[k] + by[best, np.arange(ANGLES)]
-    places = np.empty(len(cost), dtype=int)
-    places[-1] = int(total.argmin())
+    indices = np.empty(len(cost), dtype=int)
+    indices[-1] = int(total.argmin())
     for k in range(len(cost) - 1, 0, -1):
-        places[k - 1] = came[k, places[k]]
-    return places
+        indices[k - 1] = came[k, indices[k]]
+    return indices
 
 
 def _allowed(part: np.ndarray, length: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

@@ -2,33 +2,33 @@
 
 from diagrams.deformable.contact import MARGIN, prepare_for_cloth
 from diagrams.deformable.items import (
-    SoftItem,
-    SoftMaterial,
-    add_soft_item,
+    DeformableItem,
+    DeformableMaterial,
+    add_deformable_item,
+    deformable_mesh,
+    deformable_positions,
+    deformable_velocities,
     drake_mesh,
     node_masses,
-    soft_mesh,
-    soft_positions,
-    soft_velocities,
 )
-from diagrams.deformable.laundry import SoftShape, make_shape
+from diagrams.deformable.laundry import DeformableShape, make_shape
 from diagrams.deformable.tet_mesh import TetMesh, embed
-from diagrams.deformable.view import SoftView
+from diagrams.deformable.view import DeformableView
 
 __all__ = [
     "MARGIN",
-    "SoftItem",
-    "SoftMaterial",
-    "SoftShape",
-    "SoftView",
+    "DeformableItem",
+    "DeformableMaterial",
+    "DeformableShape",
+    "DeformableView",
     "TetMesh",
-    "add_soft_item",
+    "add_deformable_item",
+    "deformable_mesh",
+    "deformable_positions",
+    "deformable_velocities",
     "drake_mesh",
     "embed",
     "make_shape",
     "node_masses",
     "prepare_for_cloth",
-    "soft_mesh",
-    "soft_positions",
-    "soft_velocities",
 ]

@@ -1,7 +1,7 @@
 """Contact of cloth with rigid shapes that neither leaks nor hops.
 
 Where cloth meets a rigid shape, Drake presses it out along the shape's pressure field, p = g · depth, with
-g = hydroelastic modulus / half the thickness, and no dissipation. With the g = 3e8 Pa/m that suits rigid things, pieces
+g = hydroelastic modulus / half the thickness, and no dissipation. With the g = 3e8 Pa/m that suits rigid items, clothes
 of 100 g hop at 5 ms and never come to rest (300 uJ, 4 mm of drift in 2 s; a sock goes on hopping at 6e7, too); at
 3e7 Pa/m and less they lie still (0.0001 uJ, 0.01 mm), and the softer, the deeper a corner sinks in (`bench_soft`).
 Half the thickness is also how deep cloth may be pushed before it would come out on the other side.

@@ -1,4 +1,4 @@
-"""Soft pieces in a MultibodyPlant: register them before Finalize, read them from a Context after.
+"""Deformable items in a MultibodyPlant: register them before Finalize, read them from a Context after.
 
 The material is a linear corotated solid with stiffness-proportional damping. Its numbers come from
 `benchmarks/bench_soft.py` (table in build/bench-soft.csv): at 3 kPa the fingers squeeze through and drop it, at 20 kPa
@@ -33,14 +33,14 @@ from pydrake.multibody.plant import CoulombFriction, MultibodyPlant
 from pydrake.multibody.tree import DeformableBodyId
 from pydrake.systems.framework import Context
 
-from diagrams.deformable.laundry import SoftShape
+from diagrams.deformable.laundry import DeformableShape
 from diagrams.deformable.render_mesh import write_render_mesh
 from diagrams.deformable.tet_mesh import TetMesh
 
 
 @dataclass(frozen=True)
-class SoftMaterial:
-    """What a piece is made of.
+class DeformableMaterial:
+    """What an item is made of.
 
     Attributes
     ----------
@@ -71,40 +71,40 @@ _MODELS = {
 
 
 @dataclass(frozen=True)
-class SoftItem:
-    """A registered piece: its shape and the handles to find it in a Context."""
+class DeformableItem:
+    """A registered item: its shape and the handles to find it in a Context."""
 
     name: str
-    shape: SoftShape
+    shape: DeformableShape
     body_id: DeformableBodyId
     geometry_id: GeometryId
-    cast_id: GeometryId
-    """Of a solid fixed to the world that takes the piece's shape while it rests (`diagrams.station.sleeping_item`)."""
+    collision_proxy_id: GeometryId
+    """Of a solid fixed to the world that takes the item's shape while it sleeps (`diagrams.station.sleeping_item`)."""
 
 
-def add_soft_item(
+def add_deformable_item(
     *,
     plant: MultibodyPlant,
     name: str,
-    shape: SoftShape,
+    shape: DeformableShape,
     X_WP: RigidTransform,
-    material: SoftMaterial | None = None,
+    material: DeformableMaterial | None = None,
     filmed: bool = False,
-) -> SoftItem:
-    """Register a piece with a plant that is not yet finalized; P is the frame of the shape at rest.
+) -> DeformableItem:
+    """Register an item with a plant that is not yet finalized; P is the frame of the shape at rest.
 
-    Drake's own Meshcat drawing of the coarse mesh is hidden; `soft_view` draws the fine surface. Cameras see
-    it too where a piece is `filmed` (that takes a second to prepare), else the solid in its mean colour.
+    Drake's own Meshcat drawing of the coarse mesh is hidden; `deformable_view` draws the fine surface. Cameras see
+    it too where an item is `filmed` (that takes a second to prepare), else the solid in its mean colour.
 
     Args:
         plant: before it is finalized.
         name: of the system.
-        shape: the piece at rest.
+        shape: the item at rest.
         X_WP: where it lies.
-        material: None for the piece's own.
+        material: None for the item's own.
         filmed: whether cameras will look at it.
     """
-    material = material or SoftMaterial()
+    material = material or DeformableMaterial()
     config = DeformableBodyConfig()
     config.set_youngs_modulus(material.youngs_modulus)
     config.set_poissons_ratio(material.poissons_ratio)
@@ -133,16 +133,18 @@ def add_soft_item(
         body_id = model.RegisterDeformableBody(geometry, config, 1.0)  # the hint is ignored for a mesh
     solid = ProximityProperties()
     AddContactMaterial(properties=solid, friction=CoulombFriction(material.friction, material.friction))
-    AddCompliantHydroelasticProperties(CAST_RADIUS, CAST_MODULUS, solid)
+    AddCompliantHydroelasticProperties(PROXY_RADIUS, PROXY_MODULUS, solid)
     world, out_of_the_way = plant.world_body(), RigidTransform([0.0, 0.0, -1.0])
-    cast_id = plant.RegisterCollisionGeometry(world, out_of_the_way, Sphere(CAST_RADIUS), f"{name}_cast", solid)
-    return SoftItem(name, shape, body_id, model.GetGeometryId(body_id), cast_id)
+    collision_proxy_id = plant.RegisterCollisionGeometry(
+        world, out_of_the_way, Sphere(PROXY_RADIUS), f"{name}_proxy", solid
+    )
+    return DeformableItem(name, shape, body_id, model.GetGeometryId(body_id), collision_proxy_id)
 
 
-CAST_RADIUS = 0.03
-"""Of the ball that a cast is before the piece first rests [m]: half as thick as a piece, so that the contact gradient
-of what cloth meets (`diagrams.deformable.contact`) is that of the cast too."""
-CAST_MODULUS = 1e6
+PROXY_RADIUS = 0.03
+"""Of the ball that a collision proxy is before the item first sleeps [m]: half as thick as an item, so that the contact
+gradient of what cloth meets (`diagrams.deformable.contact`) is that of the proxy too."""
+PROXY_MODULUS = 1e6
 """[Pa]; set anew with the gradient of the surroundings."""
 
 
@@ -156,7 +158,7 @@ def drake_mesh(mesh: TetMesh, name: str) -> Mesh:
     return Mesh(InMemoryMesh(mesh_file=MemoryFile(mesh.to_vtk(), ".vtk", f"{name}.vtk")))
 
 
-def soft_positions(plant: MultibodyPlant, context: Context, item: SoftItem) -> np.ndarray:
+def deformable_positions(plant: MultibodyPlant, context: Context, item: DeformableItem) -> np.ndarray:
     """Node positions p_WN in [m], shape (N, 3).
 
     Args:
@@ -167,7 +169,7 @@ def soft_positions(plant: MultibodyPlant, context: Context, item: SoftItem) -> n
     return plant.deformable_model().GetPositions(context, item.body_id).T
 
 
-def soft_mesh(plant: MultibodyPlant, context: Context, item: SoftItem) -> TetMesh:
+def deformable_mesh(plant: MultibodyPlant, context: Context, item: DeformableItem) -> TetMesh:
     """The tetrahedra as they lie now, in W [m].
 
     Args:
@@ -175,10 +177,10 @@ def soft_mesh(plant: MultibodyPlant, context: Context, item: SoftItem) -> TetMes
         context: of the plant.
         item: one of the plant's.
     """
-    return TetMesh(soft_positions(plant, context, item), item.shape.mesh.tetrahedra)
+    return TetMesh(deformable_positions(plant, context, item), item.shape.mesh.tetrahedra)
 
 
-def soft_velocities(plant: MultibodyPlant, context: Context, item: SoftItem) -> np.ndarray:
+def deformable_velocities(plant: MultibodyPlant, context: Context, item: DeformableItem) -> np.ndarray:
     """Node velocities v_WN in [m/s], shape (N, 3).
 
     Args:
@@ -189,7 +191,7 @@ def soft_velocities(plant: MultibodyPlant, context: Context, item: SoftItem) -> 
     return plant.deformable_model().GetVelocities(context, item.body_id).T
 
 
-def node_masses(shape: SoftShape) -> np.ndarray:
+def node_masses(shape: DeformableShape) -> np.ndarray:
     """Lumped masses in [kg], shape (N,): a quarter of each tetrahedron to each corner, as in the solver."""
     masses = np.zeros(len(shape.mesh.vertices))
     share = shape.density() * shape.mesh.volumes() / 4.0

@@ -1,7 +1,7 @@
 """Three kinds of laundry: a sock, a T-shirt gathered as one picks it up, a towel rolled lengthwise.
 
 Each is a tube (or three) of a few cells for the solver and the same tube in fine rings for the eye: folds run along the
-axis, hems are thicker, cuffs, bands and stripes are colours. Sizes and weights are those of real pieces: [m], [kg].
+axis, hems are thicker, cuffs, bands and stripes are colours. Sizes and weights are those of real garments: [m], [kg].
 """
 
 from __future__ import annotations
@@ -18,8 +18,8 @@ Rgb = tuple[float, float, float]
 
 
 @dataclass(frozen=True)
-class SoftShape:
-    """One piece: the solid, the surface drawn for it, and its mass in [kg]. Lies around the origin, z up."""
+class DeformableShape:
+    """One garment: the solid, the surface drawn for it, and its mass in [kg]. Lies around the origin, z up."""
 
     kind: str
     mesh: TetMesh
@@ -44,8 +44,8 @@ class _Skin:
     """Colour of both ends by (radius, angle), radius 0 at the axis and 1 at the rim."""
 
 
-def make_shape(kind: str, color: Rgb | None = None, *, segments: int = 0) -> SoftShape:
-    """Make a piece of the given kind: `sock`, `tshirt` or `towel`, in its own colour or the given one.
+def make_shape(kind: str, color: Rgb | None = None, *, segments: int = 0) -> DeformableShape:
+    """Make a garment of the given kind: `sock`, `tshirt` or `towel`, in its own colour or the given one.
 
     `segments` of the tube, twelve tetrahedra each, are as many as each kind needs unless given (a study of elements).
 
@@ -57,13 +57,13 @@ def make_shape(kind: str, color: Rgb | None = None, *, segments: int = 0) -> Sof
         color: None for its own.
         segments: of the tube; None for the kind's own.
     """
-    if kind not in SOFT_KINDS:
-        raise InputError(f"soft item kind {kind!r} does not exist; use one of {', '.join(SOFT_KINDS)}")
-    return SOFT_KINDS[kind](color, segments)
+    if kind not in DEFORMABLE_KINDS:
+        raise InputError(f"deformable item kind {kind!r} does not exist; use one of {', '.join(DEFORMABLE_KINDS)}")
+    return DEFORMABLE_KINDS[kind](color, segments)
 
 
-def _finish(kind: str, mesh: TetMesh, skins: Sequence[_Skin], mass: float) -> SoftShape:
-    """Centre the piece on its centre of mass, embed the skins."""
+def _finish(kind: str, mesh: TetMesh, skins: Sequence[_Skin], mass: float) -> DeformableShape:
+    """Centre the garment on its centre of mass, embed the skins."""
     volumes = mesh.volumes()
     centers = mesh.vertices[mesh.tetrahedra].mean(axis=1)
     center = volumes @ centers / volumes.sum()
@@ -73,7 +73,7 @@ def _finish(kind: str, mesh: TetMesh, skins: Sequence[_Skin], mass: float) -> So
     triangles = np.concatenate([t + o for (_, t, _), o in zip(parts, offsets, strict=True)])
     corners, weights = embed(mesh, points)
     surface = EmbeddedSurface(corners, weights, triangles, np.concatenate([c for _, _, c in parts]))
-    return SoftShape(kind, TetMesh(mesh.vertices - center, mesh.tetrahedra), surface, mass)
+    return DeformableShape(kind, TetMesh(mesh.vertices - center, mesh.tetrahedra), surface, mass)
 
 
 def _draw(skin: _Skin) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
@@ -144,7 +144,7 @@ def _mix(color: Rgb, other: Rgb, share: float) -> Rgb:
     return r, g, b
 
 
-def _sock(color: Rgb | None, segments: int) -> SoftShape:
+def _sock(color: Rgb | None, segments: int) -> DeformableShape:
     base = color or (0.74, 0.05, 0.10)
     white: Rgb = (0.95, 0.94, 0.90)
     tube = Tube.bent(
@@ -173,7 +173,7 @@ def _sock(color: Rgb | None, segments: int) -> SoftShape:
     return _finish("sock", builder.mesh(), [_Skin(tube, 28, 18, fold, paint, _plain(white))], mass=0.06)
 
 
-def _tshirt(color: Rgb | None, segments: int) -> SoftShape:
+def _tshirt(color: Rgb | None, segments: int) -> DeformableShape:
     base = color or (0.05, 0.26, 0.60)
     dark, light = _mix(base, (0.0, 0.0, 0.0), 0.65), _mix(base, (1.0, 1.0, 1.0), 0.75)
     body = Tube.bent(
@@ -222,7 +222,7 @@ def _tshirt(color: Rgb | None, segments: int) -> SoftShape:
     return _finish("tshirt", builder.mesh(), skins, mass=0.17)
 
 
-def _towel(color: Rgb | None, segments: int) -> SoftShape:
+def _towel(color: Rgb | None, segments: int) -> DeformableShape:
     base = color or (0.88, 0.55, 0.10)
     stripe, fringe = _mix(base, (0.35, 0.10, 0.05), 0.75), _mix(base, (1.0, 1.0, 1.0), 0.7)
     tube = Tube.bent(
@@ -253,4 +253,8 @@ def _towel(color: Rgb | None, segments: int) -> SoftShape:
     return _finish("towel", builder.mesh(), [_Skin(tube, 30, 24, fold, paint, layers)], mass=0.26)
 
 
-SOFT_KINDS: dict[str, Callable[[Rgb | None, int], SoftShape]] = {"sock": _sock, "tshirt": _tshirt, "towel": _towel}
+DEFORMABLE_KINDS: dict[str, Callable[[Rgb | None, int], DeformableShape]] = {
+    "sock": _sock,
+    "tshirt": _tshirt,
+    "towel": _towel,
+}

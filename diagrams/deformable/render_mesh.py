@@ -1,4 +1,4 @@
-"""What cameras see of a soft piece: its fine surface, as a mesh that Drake's renderer carries along with the solid."""
+"""What cameras see of a deformable item: its fine surface, which Drake's renderer carries along with the solid."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 from scipy.spatial import cKDTree
 
-from diagrams.deformable.laundry import SoftShape
+from diagrams.deformable.laundry import DeformableShape
 from diagrams.deformable.tet_mesh import TetMesh, embed
 
 SHADES = 8
@@ -16,13 +16,13 @@ LEAST = 1e-4
 """Barycentric coordinate of a corner that counts as inside: the renderer refuses corners outside the solid."""
 
 
-def write_render_mesh(shape: SoftShape, path: Path) -> None:
-    """Write the surface of a piece at rest, in its frame, as Wavefront OBJ with normals and colours.
+def write_render_mesh(shape: DeformableShape, path: Path) -> None:
+    """Write the surface of an item at rest, in its frame, as Wavefront OBJ with normals and colours.
 
     Where the surface stands out of the coarse solid, it is drawn in.
 
     Args:
-        shape: the piece at rest.
+        shape: the item at rest.
         path: of the OBJ file.
     """
     surface, triangles = shape.surface, shape.surface.triangles

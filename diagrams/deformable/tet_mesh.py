@@ -1,6 +1,6 @@
 """Tetrahedral volumes and the finer surfaces embedded in them: what the solver moves and what the eye sees.
 
-A piece of laundry is simulated as a coarse solid (60 to 300 tetrahedra, see `soft_shapes`) and drawn as a surface of
+A garment is simulated as a coarse solid (60 to 300 tetrahedra, see `laundry`) and drawn as a surface of
 a thousand triangles, each vertex of which hangs on one tetrahedron by barycentric coordinates: x = Σ_i b_i x_i.
 Linear elements deform affinely, so the drawn surface follows the solid exactly. Pure numpy, no Drake.
 """
@@ -171,8 +171,8 @@ class Tube:
 class TetBuilder:
     """Grows a solid out of tubes: sections of four corners around a node on the axis, twelve tetrahedra between two.
 
-    The nodes on the axis lie inside the solid. Drake needs them: what keeps two soft bodies apart is their depth below
-    the surface, which a mesh with boundary nodes only does not have.
+    The nodes on the axis lie inside the solid. Drake needs them: what keeps two deformable bodies apart is their depth
+    below the surface, which a mesh with boundary nodes only does not have.
     """
 
     def __init__(self) -> None:
@@ -184,7 +184,7 @@ class TetBuilder:
 
         Args:
             tube: its axis and half axes.
-            segments: how many pieces the shape is made of.
+            segments: number of subdivisions of the shape.
         """
         sections = [self._section(tube, i / segments) for i in range(segments + 1)]
         self._join(sections)

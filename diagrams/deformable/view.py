@@ -1,6 +1,6 @@
-"""Draws soft pieces in Drake's Meshcat as the fine surfaces embedded in their tetrahedra.
+"""Draws deformable items in Drake's Meshcat as the fine surfaces embedded in their tetrahedra.
 
-Meshcat can animate transforms and visibility, not vertices. In a recording a piece therefore moves as a rigid surface
+Meshcat can animate transforms and visibility, not vertices. In a recording an item therefore moves as a rigid surface
 while that fits, as it does where it hangs in the hand; when it has bent, a new surface takes its place: an object of
 its own that is visible from its time to the next one's.
 """
@@ -17,17 +17,17 @@ from pydrake.math import RigidTransform, RotationMatrix
 from pydrake.systems.framework import Context, DiagramBuilder, EventStatus, LeafSystem, State
 from scipy.spatial.transform import Rotation
 
-from diagrams.deformable.items import SoftItem
+from diagrams.deformable.items import DeformableItem
 
 VIEW_PERIOD = 1.0 / 30.0  # [s]
 RECORD_PERIOD = 0.1  # [s]; a recording keeps every surface, some 40 kB each
-_SEEN = 5e-4  # [m]: a piece none of whose nodes moved farther is not drawn again
+_SEEN = 5e-4  # [m]: an item none of whose nodes moved farther is not drawn again
 _BENT = 2e-3  # [m]: in a recording, one that fits its surface as well as this moves as a rigid body
 
 
 @dataclass(frozen=True)
 class _Drawn:
-    """What is drawn of a piece: a surface of `frame`, and since `moved`, a later frame, in pose X."""
+    """What is drawn of an item: a surface of `frame`, and since `moved`, a later frame, in pose X."""
 
     nodes: np.ndarray
     """When the surface was made [m], shape (N, 3)."""
@@ -36,20 +36,20 @@ class _Drawn:
     X: RigidTransform
 
 
-class SoftView(LeafSystem):
-    """Publishes the surfaces of soft pieces.
+class DeformableView(LeafSystem):
+    """Publishes the surfaces of deformable items.
 
     ::
 
-                        ┌──────────┐
-        query_object →  │ SoftView │ → Meshcat, under `path`/<name>
-                        └──────────┘
+                        ┌────────────────┐
+        query_object →  │ DeformableView │ → Meshcat, under `path`/<name>
+                        └────────────────┘
 
-    State, three groups a piece, what `_Drawn` has: nodes, flat; the two frames; the pose as a 3 x 4 matrix, flat.
+    State, three groups an item, what `_Drawn` has: nodes, flat; the two frames; the pose as a 3 x 4 matrix, flat.
     """
 
     def __init__(
-        self, *, items: Sequence[SoftItem], meshcat: Meshcat, recording: bool = False, path: str = "soft"
+        self, *, items: Sequence[DeformableItem], meshcat: Meshcat, recording: bool = False, path: str = "deformable"
     ) -> None:
         super().__init__()
         self._items = tuple(items)
@@ -73,11 +73,11 @@ class SoftView(LeafSystem):
         *,
         builder: DiagramBuilder,
         scene_graph: SceneGraph,
-        items: Sequence[SoftItem],
+        items: Sequence[DeformableItem],
         meshcat: Meshcat,
         recording: bool = False,
-        path: str = "soft",
-    ) -> SoftView:
+        path: str = "deformable",
+    ) -> DeformableView:
         """Add a view of `items`, connected to the scene graph's query port.
 
         Args:
@@ -89,7 +89,7 @@ class SoftView(LeafSystem):
             path: in Meshcat.
         """
         view = builder.AddNamedSystem(
-            "soft_view", SoftView(items=items, meshcat=meshcat, recording=recording, path=path)
+            "deformable_view", DeformableView(items=items, meshcat=meshcat, recording=recording, path=path)
         )
         builder.Connect(scene_graph.get_query_output_port(), view.GetInputPort("query_object"))
         return view
@@ -102,7 +102,7 @@ class SoftView(LeafSystem):
         )
 
     def _changes(self, context: Context) -> list[tuple[int, _Drawn, _Drawn]]:
-        """Number of each piece that moved, what is drawn of it, and what is to be.
+        """Number of each item that moved, what is drawn of it, and what is to be.
 
         Publish and update find the same: Drake publishes at t before it updates at t, and where there is cloth the
         plant's step is an unrestricted update, so that only another of these sees the plant as it was before it.
@@ -148,7 +148,7 @@ class SoftView(LeafSystem):
         return EventStatus.Succeeded()
 
     def _record(self, base: str, before: _Drawn, after: _Drawn, time: float) -> None:
-        """Keep one step of a piece: as keys of the animation, between which Meshcat draws straight lines."""
+        """Keep one step of an item: as keys of the animation, between which Meshcat draws straight lines."""
         path = f"{base}/{after.frame}"
         if after.frame == before.frame:
             if after.moved > before.moved + 1:  # it stood still until one frame ago

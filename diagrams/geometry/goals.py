@@ -1,4 +1,4 @@
-"""What "placed" means (docs/method.md, 7): one goal a thing, judged alike by the monitor and by an operator's eye."""
+"""What "placed" means (docs/method.md, 7): one goal an item, judged alike by the monitor and by an operator's eye."""
 
 from __future__ import annotations
 
@@ -10,20 +10,20 @@ import numpy as np
 
 
 class Goal(Protocol):
-    """Where a thing belongs. Poses are vectors (position, quaternion w x y z), bounds (min, max), both in W."""
+    """Where an item belongs. Poses are vectors (position, quaternion w x y z), bounds (min, max), both in W."""
 
     @property
     def position(self) -> np.ndarray:
-        """Where a person would look: the point in W [m] that the thing is brought to. Shape (3,)."""
+        """Where a person would look: the point in W [m] that the item is brought to. Shape (3,)."""
         ...
 
     @property
     def precise(self) -> bool:
-        """Whether the thing must come to `position` itself, or just be inside."""
+        """Whether the item must come to `position` itself, or just be inside."""
         ...
 
     def placed(self, pose: np.ndarray, bounds: np.ndarray) -> bool:
-        """Whether a thing with this pose (7,) and these bounds (6,) is where it belongs; rest is judged elsewhere.
+        """Whether an item with this pose (7,) and these bounds (6,) is where it belongs; rest is judged elsewhere.
 
         Args:
             pose: position [m] and quaternion (w, x, y, z) in W. Shape (7,).
@@ -85,7 +85,7 @@ class MarkGoal:
     """At rest on a marked spot of a table."""
 
     position: np.ndarray
-    """Where the thing's origin is when it stands on the mark, in W [m]. Shape (3,)."""
+    """Where the item's origin is when it stands on the mark, in W [m]. Shape (3,)."""
     tolerance: float = 0.03
     """Horizontal distance that is still on the mark [m] (docs/method.md, 7)."""
     height_tolerance: float = 0.03

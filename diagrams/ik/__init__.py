@@ -5,7 +5,7 @@ joints allow are found with the same solver.
 """
 
 from diagrams.ik.joint_pace import at_joint_pace, unhurried
-from diagrams.ik.options import IkOptions, IkStatus, KeepClearOptions
+from diagrams.ik.options import CollisionAvoidanceOptions, IkOptions, IkStatus
 from diagrams.ik.program import StepProgram
 from diagrams.ik.reachability import ReachReport, reach_report
 from diagrams.ik.solver import IkSolver
@@ -14,11 +14,11 @@ from diagrams.ik.system import IkStatusField, OrientationWeightedIk
 from diagrams.ik.target import wanted_pose
 
 __all__ = [
+    "CollisionAvoidanceOptions",
     "IkOptions",
     "IkSolver",
     "IkStatus",
     "IkStatusField",
-    "KeepClearOptions",
     "OrientationWeightedIk",
     "ReachReport",
     "StartPosture",

@@ -1,4 +1,4 @@
-"""Distances of the arm to itself and to what is solid around it, with their slopes in the joints."""
+"""Distances of the arm to itself and to what is solid around it, with their Jacobian in the joints."""
 
 import math
 
@@ -9,7 +9,7 @@ from pydrake.systems.framework import Context, Diagram
 
 from canal.errors import InputError
 from diagrams.ik.kinematics import ArmKinematics
-from diagrams.ik.options import KeepClearOptions
+from diagrams.ik.options import CollisionAvoidanceOptions
 
 # Price of a metre of missing clearance [cost] / [m]: a start inside an obstacle has a way out, and wherever the margin
 # can be kept it is.
@@ -23,7 +23,7 @@ _AT_MARGIN = 1e-5  # [m], nearer than this beyond the margin counts as at it
 _POSTURES = 40  # random ones, to tell pairs that can part from pairs that never do
 
 
-class Clearance:
+class CollisionDistance:
     """Signed distances d(q) of watched pairs, and n rows ∂d/∂q, at the posture that the kinematics was set to.
 
     Pairs: every collision geometry that the arm's joints move, against every solid one that they do not, and against
@@ -36,7 +36,7 @@ class Clearance:
     """
 
     def __init__(
-        self, kinematics: ArmKinematics, diagram: Diagram, root_context: Context, options: KeepClearOptions
+        self, kinematics: ArmKinematics, diagram: Diagram, root_context: Context, options: CollisionAvoidanceOptions
     ) -> None:
         self.options = options
         self._kinematics = kinematics
@@ -103,7 +103,7 @@ class Clearance:
         """Whether a least distance [m] is (nearly) the margin, or below."""
         return distance < self.options.margin + _AT_MARGIN
 
-    def slopes(self, near: "NearPairs") -> np.ndarray:
+    def jacobian(self, near: "NearPairs") -> np.ndarray:
         """∂d/∂q of near pairs (k, n) [m/rad]; the posture must still be set.
 
         Both closest points lie on the line along the normal n, so a joint with axis ω and velocity v of the tool at
@@ -143,7 +143,7 @@ class Cuts:
         least: smallest distance where `add` was last called [m], or as far as it looked; NaN without a clearance.
     """
 
-    def __init__(self, clearance: Clearance | None, q_prev: np.ndarray) -> None:
+    def __init__(self, clearance: CollisionDistance | None, q_prev: np.ndarray) -> None:
         self._clearance, self._q_prev = clearance, q_prev
         self.rows: list[tuple[np.ndarray, np.ndarray]] = []
         self.least = math.nan
@@ -153,7 +153,7 @@ class Cuts:
         if self._clearance is None:
             return 0.0
         near, margin = self._clearance.near(_NEAR), self._clearance.options.margin
-        A = self._clearance.slopes(near)
+        A = self._clearance.jacobian(near)
         self.rows = [*self.rows[1 - _KEPT :], (A, margin + _PAD - near.distances + A.dot(q - self._q_prev))]
         self.least = float(near.distances.min(initial=margin + _NEAR))
         return self.price(margin + _PAD - self.least)
@@ -187,5 +187,5 @@ def _solid_bodies(kinematics: ArmKinematics, moving: list[RigidBody], names: lis
     unknown = [name for name in names if not any(name in known_as(body) for body in bodies)]
     if unknown:
         known = sorted({name for body in bodies for name in known_as(body)})
-        raise InputError(f"keep_clear: no solid body '{unknown[0]}'; there are {', '.join(known)}")
+        raise InputError(f"collision_avoidance: no solid body '{unknown[0]}'; there are {', '.join(known)}")
     return [body for body in bodies if any(name in known_as(body) for name in names)]

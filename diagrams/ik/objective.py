@@ -3,7 +3,7 @@
     f(q) = w_p |p(q) - p*|² + w_o θ(q)² + Σ ((q - q_prev) / range)²          (the paper's J(s), V-C)
 
 With φ the logarithm of the rotation from the wanted to the actual orientation, θ = |φ|, the residual
-r = (√w_o φ, √w_p (p - p*)) has the slope K = diag(√w_o J_l⁻¹(φ), √w_p I) J, J the tool's Jacobian (rows ω then v), so
+r = (√w_o φ, √w_p (p - p*)) has the Jacobian K = diag(√w_o J_l⁻¹(φ), √w_p I) J, with J the tool's own (rows ω, v), so
 
     ∇f  = 2 (Kᵀ r + D (q - q_prev)) = 2 (Jᵀ (w_o φ, w_p (p - p*)) + D (q - q_prev)),    D = diag(1/range²)
     ∇²f ≈ 2 (Kᵀ K + D),

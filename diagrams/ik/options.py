@@ -25,14 +25,14 @@ class IkStatus(enum.IntEnum):
     """No usable target (not finite, zero quaternion) or no solution: the last posture, or the nearest within limits."""
 
 
-@options("ik.keep_clear")
-class KeepClearOptions:
-    """Keeping clear of oneself and of what the scene declares solid, by linearised signed distances."""
+@options("ik.collision_avoidance")
+class CollisionAvoidanceOptions:
+    """Collision avoidance, with the arm itself and with solid bodies, by linearised signed distances."""
 
     margin: NotNegative = 0.02
     """Distance that every watched pair keeps [m]."""
     solid_bodies: list[str] = field(default_factory=list)
-    """Names of the bodies beside the arm to keep clear of; empty means all that the arm's plant knows."""
+    """Names of the bodies beside the arm to avoid; empty means all that the arm's plant knows."""
 
 
 @options("ik")
@@ -45,5 +45,5 @@ class IkOptions:
     """Joint speeds [rad/s]; empty takes the model's."""
     soft_limit_margin: NotNegative = 0.0
     """Distance kept from the model's joint limits [rad]."""
-    keep_clear: KeepClearOptions | None = None
+    collision_avoidance: CollisionAvoidanceOptions | None = None
     """None: no distances are computed."""

@@ -12,7 +12,7 @@ from pydrake.systems.framework import Diagram
 from scipy.linalg.lapack import dpotrs
 
 from canal.errors import InputError
-from diagrams.ik.collision_distance import SLACK_PRICE, Clearance, Cuts
+from diagrams.ik.collision_distance import SLACK_PRICE, CollisionDistance, Cuts
 from diagrams.ik.kinematics import ArmKinematics
 from diagrams.ik.objective import PoseObjective
 from diagrams.ik.options import IkOptions, IkStatus
@@ -67,7 +67,7 @@ class IkSolver:
 
     Attributes:
         kinematics: the chain of joints; q_min, q_max, v_max: the bounds in use, shape (n,).
-        clearance: distances, when keeping clear.
+        clearance: distance to a collision, where it is avoided.
         posture, step: decision variables of `program`: q at the tick's end and q - q_prev, shape (n,).
         options: as given.
     """
@@ -83,10 +83,10 @@ class IkSolver:
         """Build the solver.
 
         Args:
-            plant: any finalized MultibodyPlant; `diagram`, with its SceneGraph, is needed to keep clear.
+            plant: any finalized MultibodyPlant; `diagram`, with its SceneGraph, is needed for collision avoidance.
             tcp_frame: the tool's frame T; base_frame: B, in which targets are given, the world when not given.
             options: see `IkOptions`.
-            diagram: that holds the plant and its SceneGraph, for `options.keep_clear`.
+            diagram: that holds the plant and its SceneGraph, for `options.collision_avoidance`.
 
         Raises:
             InputError: an option cannot be used, or the frame does not hang from the base.
@@ -112,11 +112,13 @@ class IkSolver:
             raise InputError("the model gives no joint speed limits; set speed_limits [rad/s] in the IK options")
         self.objective = PoseObjective(self.kinematics, options.position_weight)
         self._identity = np.eye(n)
-        self.clearance: Clearance | None = None
-        if options.keep_clear is not None:
+        self.clearance: CollisionDistance | None = None
+        if options.collision_avoidance is not None:
             if diagram is None or root_context is None:
-                raise InputError("keep_clear needs the diagram of the plant and its SceneGraph; give `diagram`")
-            self.clearance = Clearance(self.kinematics, diagram, root_context, options.keep_clear)
+                raise InputError(
+                    "collision_avoidance needs the diagram of the plant and its SceneGraph; give `diagram`"
+                )
+            self.clearance = CollisionDistance(self.kinematics, diagram, root_context, options.collision_avoidance)
         self.quadratic = StepProgram(n, None if self.clearance is None else SLACK_PRICE)
         self.posture, self.step = self.quadratic.posture, self.quadratic.step
         self._q_middle = np.clip(

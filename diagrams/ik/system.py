@@ -16,7 +16,7 @@ CONTROL_PERIOD = 0.01  # [s]
 
 
 class IkStatusField(enum.IntEnum):
-    """Places in the `ik_status` vector."""
+    """Indices in the `ik_status` vector."""
 
     STATUS = 0
     """`diagrams.ik.options.IkStatus`."""
@@ -123,7 +123,7 @@ class OrientationWeightedIk(LeafSystem):
         """Add the system, connect the ports that are given, return it.
 
         `plant` is the arm alone, finalized: the solver's own copy for kinematics, never the one that is simulated;
-        `diagram` holds it with its SceneGraph when the options ask to keep clear.
+        `diagram` holds it with its SceneGraph when the options ask for collision avoidance.
 
         Args:
             builder: of the diagram that it is added to.

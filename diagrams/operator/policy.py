@@ -1,8 +1,8 @@
 """What a person at the table would do with the stick and the buttons; pure decisions, no Drake.
 
-The person sees (late and a little wrong) where the things, the gripper and the drawn path are. They move the stick in
+The person sees (late and a little wrong) where the items, the gripper and the drawn path are. They move the stick in
 short ballistic pushes, each followed by a look at what came of it (intermittent control, as in human reaching), aim
-above the thing before the gripper comes down on it, check that a grip held, and go back where it did not.
+above the item before the gripper comes down on it, check that a grip held, and go back where it did not.
 """
 
 import math
@@ -104,21 +104,21 @@ class OperatorPolicy:
         state.mode = Mode.PICK
         held = [i for i, p in enumerate(sight.positions) if np.linalg.norm(p - sight.p_BT) < self.options.lost_m]
         if nav.gripper_closed and held:  # somebody else has begun
-            state.thing, state.mode, state.beside = float(held[0]), Mode.CARRY, self._room(sight, held[0])
+            state.item, state.mode, state.beside = float(held[0]), Mode.CARRY, self._room(sight, held[0])
             tries[held[0]] += 1
             if Leg(int(nav.leg)) in (Leg.HOME_TO_PICK, Leg.PLACE_TO_HOME):
                 self._press(state, REVERSE, time)
 
     def _pick(self, state: OperatorState, given_up: np.ndarray, tries: np.ndarray, sight: Sight, time: float) -> None:
         nav = sight.navigation
-        if state.thing < 0:
-            state.thing = float(self._hanging(tries, sight))
-            if state.thing >= 0:
-                tries[int(state.thing)] += 1
+        if state.item < 0:
+            state.item = float(self._hanging(tries, sight))
+            if state.item >= 0:
+                tries[int(state.item)] += 1
                 state.mode, state.aimed = Mode.PUSH, 0.0
                 return
             self._choose(state, given_up, tries, sight)
-        if state.thing < 0:
+        if state.item < 0:
             state.mode = Mode.FINISH
             return
         leg = Leg(int(nav.leg))
@@ -130,16 +130,16 @@ class OperatorPolicy:
         if nav.gripper_closed:
             self._press(state, GRIPPER, time)
             return
-        thing = int(state.thing)
-        if self._aim(state, sight, sight.positions[thing], end=0.0, time=time) and nav.waiting:
+        item = int(state.item)
+        if self._aim(state, sight, sight.positions[item], end=0.0, time=time) and nav.waiting:
             self._press(state, GRIPPER, time)
             state.grip_height = float(sight.p_BT[2])
             state.mode = Mode.LIFT
 
     def _choose(self, state: OperatorState, given_up: np.ndarray, tries: np.ndarray, sight: Sight) -> None:
-        """The topmost thing to do that lies where the canal's pick disk reaches; first what is in the way of others."""
+        """The topmost item to do that lies where the canal's pick disk reaches; first what is in the way of others."""
         canal = self.canal
-        state.thing, state.aimed = -1.0, 0.0
+        state.item, state.aimed = -1.0, 0.0
         for i, position in enumerate(sight.positions):
             # Looked at anew each time: what lay well may have been knocked, or have rolled out.
             offset = position - canal.center(0.0)
@@ -154,31 +154,31 @@ class OperatorPolicy:
             waits_for = self.ways.waits_for(i, todo, sight.positions, self.p_BG)
             return float(sight.positions[i][2]) - 0.1 * across - float(tries[i]) - waits_for
 
-        state.thing = float(max(todo, key=score, default=-1))
+        state.item = float(max(todo, key=score, default=-1))
 
     def _lift(self, state: OperatorState, given_up: np.ndarray, tries: np.ndarray, sight: Sight, time: float) -> None:
         risen = sight.p_BT[2] - state.grip_height > self.options.lift_m
         if not (risen or phase(self.canal, sight.navigation.disk) > -self.options.aim_from):
             return
-        thing = int(state.thing)
-        if np.linalg.norm(sight.positions[thing] - sight.p_BT) < self.options.lost_m:
-            state.mode, state.aimed, state.beside = Mode.CARRY, 0.0, self._room(sight, thing)
+        item = int(state.item)
+        if np.linalg.norm(sight.positions[item] - sight.p_BT) < self.options.lost_m:
+            state.mode, state.aimed, state.beside = Mode.CARRY, 0.0, self._room(sight, item)
         else:
             self._try_again(state, tries)
 
     def _carry(self, state: OperatorState, given_up: np.ndarray, tries: np.ndarray, sight: Sight, time: float) -> None:
-        nav, thing = sight.navigation, int(state.thing)
-        held = sight.positions[thing] - sight.p_BT
+        nav, item = sight.navigation, int(state.item)
+        held = sight.positions[item] - sight.p_BT
         if np.linalg.norm(held) > 1.5 * self.options.lost_m:
             self._try_again(state, tries)
             return
         if Leg(int(nav.leg)) is not Leg.HOME_TO_PLACE:
             return
-        goal = self.goals[thing]
-        # What must come to the mark is the thing, which may sit off the middle of the gripper.
-        target = self.p_BG[thing] - held if goal.precise else self._beside(state.beside)
+        goal = self.goals[item]
+        # What must come to the mark is the item, which may sit off the middle of the gripper.
+        target = self.p_BG[item] - held if goal.precise else self._beside(state.beside)
         aimed = self._aim(state, sight, target, end=self.canal.n_disks - 1.0, time=time)
-        slip = not goal.precise and not tries[thing] and phase(self.canal, nav.disk) > self.options.let_go_at
+        slip = not goal.precise and not tries[item] and phase(self.canal, nav.disk) > self.options.let_go_at
         if slip or (aimed and nav.waiting):
             self._press(state, GRIPPER, time)
             state.mode = Mode.LEAVE
@@ -192,12 +192,12 @@ class OperatorPolicy:
             return self.canal.point(end, math.hypot(x[2], y[2]) * self.options.lay_above, math.atan2(y[2], x[2]))
         return self.canal.point(end, self.options.lay_beside, level if side > 0 else level + math.pi)
 
-    def _room(self, sight: Sight, thing: int) -> float:
-        """Where a thing that may lie anywhere has most room: at a side first, above the others where both are taken."""
+    def _room(self, sight: Sight, item: int) -> float:
+        """Where an item that may lie anywhere has most room: at a side first, above the others where both are taken."""
         there = [
             p
             for i, p in enumerate(sight.positions)
-            if i != thing and np.linalg.norm(p - self.canal.center(self.canal.n_disks - 1.0)) < NEAR_GOAL
+            if i != item and np.linalg.norm(p - self.canal.center(self.canal.n_disks - 1.0)) < NEAR_GOAL
         ]
         room = {}
         for side in (-1.0, 1.0, 0.0):
@@ -211,14 +211,14 @@ class OperatorPolicy:
             return
         if phase(self.canal, sight.navigation.disk) > self.options.judge_at:
             return
-        thing = int(state.thing)
-        if not sight.placed[thing]:
-            tries[thing] += 1
-        state.thing, state.aimed = float(self._hanging(tries, sight)), 0.0
-        state.mode = Mode.PUSH if state.thing >= 0 else Mode.PICK
+        item = int(state.item)
+        if not sight.placed[item]:
+            tries[item] += 1
+        state.item, state.aimed = float(self._hanging(tries, sight)), 0.0
+        state.mode = Mode.PUSH if state.item >= 0 else Mode.PICK
 
     def _hanging(self, tries: np.ndarray, sight: Sight) -> int:
-        """A thing that is at the goal and not quite in; -1 for none."""
+        """An item that is at the goal and not quite in; -1 for none."""
         end = self.canal.center(self.canal.n_disks - 1.0)
         for i, goal in enumerate(self.goals):
             near = np.linalg.norm(sight.positions[i] - end) < NEAR_GOAL
@@ -233,7 +233,7 @@ class OperatorPolicy:
             self._press(state, GRIPPER, time)
         elif Leg(int(nav.leg)) in (Leg.PLACE_TO_HOME, Leg.HOME_TO_PICK):
             self._press(state, REVERSE, time)
-        elif self._aim(state, sight, sight.positions[int(state.thing)], self.canal.n_disks - 1.0, time) and nav.waiting:
+        elif self._aim(state, sight, sight.positions[int(state.item)], self.canal.n_disks - 1.0, time) and nav.waiting:
             self._press(state, REVERSE, time)
             state.mode = Mode.RETREAT
 
@@ -254,8 +254,8 @@ class OperatorPolicy:
     # ---- the hand ----
 
     def _try_again(self, state: OperatorState, tries: np.ndarray) -> None:
-        tries[int(state.thing)] += 1
-        state.thing, state.mode, state.aimed = -1.0, Mode.PICK, 0.0
+        tries[int(state.item)] += 1
+        state.item, state.mode, state.aimed = -1.0, Mode.PICK, 0.0
 
     def _press(self, state: OperatorState, button: int, time: float) -> None:
         state.button, state.button_until = float(button), time + self.options.press_s

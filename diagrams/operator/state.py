@@ -10,7 +10,7 @@ from canal.navigation import NavigationState
 EPSILON = 1e-6
 """[s] Slack in comparing sample times."""
 NEAR_GOAL = 0.35
-"""[m] A thing this near the end of the canal hangs at the door; further off it fell elsewhere."""
+"""[m] An item this near the end of the canal hangs at the door; further off it fell elsewhere."""
 HAND, EYE = 1, 2
 """Streams of random numbers: errors of the hand, errors of the eye."""
 
@@ -33,7 +33,7 @@ class Sight:
     """What the person sees at one moment."""
 
     positions: np.ndarray
-    """Middles of the things in B [m]. Shape (n, 3)."""
+    """Middles of the items in B [m]. Shape (n, 3)."""
     placed: np.ndarray
     """Whether each looks placed. Shape (n,)."""
     p_BT: np.ndarray
@@ -47,8 +47,8 @@ class OperatorState:
     """The person's mind and hand; packed into a vector for the Context."""
 
     mode: float = float(Mode.BEGIN)
-    thing: float = -1.0
-    """Index of the thing that is being handled; -1 for none."""
+    item: float = -1.0
+    """Index of the item that is being handled; -1 for none."""
     busy_until: float = 0.0
     """Time [s] until which the person watches and decides nothing."""
     stick_x: float = 0.0
@@ -61,19 +61,19 @@ class OperatorState:
     grip_height: float = 0.0
     """Height of the gripper at the grip [m]."""
     aimed: float = 0.0
-    """1 once the aim above the thing was good."""
+    """1 once the aim above the item was good."""
     beside: float = 0.0
-    """Where on the canal's last disk the thing in the hand is to go, if anywhere will do: -1 and 1 for its sides."""
+    """Where on the canal's last disk the item in the hand is to go, if anywhere will do: -1 and 1 for its sides."""
 
     SIZE = 11
 
     @staticmethod
     def unpack(vector: np.ndarray, n: int) -> tuple["OperatorState", np.ndarray, np.ndarray]:
-        """The state, which things are given up (n,) and the tries (n,) from a vector of SIZE + 2n.
+        """The state, which items are given up (n,) and the tries (n,) from a vector of SIZE + 2n.
 
         Args:
             vector: of SIZE + 2n numbers.
-            n: number of things.
+            n: number of items.
         """
         size = OperatorState.SIZE
         return OperatorState(*vector[:size].tolist()), vector[size : size + n].copy(), vector[size + n :].copy()
@@ -82,9 +82,9 @@ class OperatorState:
         """Inverse of `unpack`.
 
         Args:
-            given_up: 0 or 1 for each thing. Shape (n,).
-            tries: so far, for each thing. Shape (n,).
+            given_up: 0 or 1 for each item. Shape (n,).
+            tries: so far, for each item. Shape (n,).
         """
-        mind = (self.mode, self.thing, self.busy_until, self.stick_x, self.stick_y, self.stick_until)
+        mind = (self.mode, self.item, self.busy_until, self.stick_x, self.stick_y, self.stick_until)
         hand = (self.button, self.button_until, self.grip_height, self.aimed, self.beside)
         return np.concatenate([[*mind, *hand], given_up, tries])

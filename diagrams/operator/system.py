@@ -76,10 +76,10 @@ class OperatorMind(LeafSystem):
         wrong = rng.normal(0.0, self._noise_m, (n, 3))
         poses[:, :3] += wrong
         bounds += np.hstack([wrong, wrong])
-        # In doubt a thing hangs out: what is seen a little wrong must be inside by more than that.
+        # In doubt an item hangs out: what is seen a little wrong must be inside by more than that.
         doubt = np.repeat([-2.0, 2.0], 3) * self._noise_m
         placed = [g.placed(p, b + doubt) for g, p, b in zip(self._policy.goals, poses, bounds, strict=True)]
-        # A mark is met by the thing's origin; a crumpled thing is gripped at its middle.
+        # A mark is met by the item's origin; a crumpled item is gripped at its middle.
         seen = [
             p[:3] if g.precise else (b[:3] + b[3:]) / 2
             for g, p, b in zip(self._policy.goals, poses, bounds, strict=True)
@@ -113,7 +113,7 @@ class SimulatedOperator(Diagram):
         navigation: NavigationOptions | None = None,
         seed: int = 0,
     ) -> None:
-        """A person who brings thing i to `goals[i]` by `canal`, from a base at `X_WB`; all draws from `seed`."""
+        """A person who brings item i to `goals[i]` by `canal`, from a base at `X_WB`; all draws from `seed`."""
         super().__init__()
         options = options or OperatorOptions()
         navigation = navigation or NavigationOptions()

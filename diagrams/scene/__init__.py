@@ -5,15 +5,16 @@ A `World` is data; `add_scene` builds it, and refuses what overlaps or does not 
 
 from diagrams.scene.fitted_table import FittedTable, fit_tables
 from diagrams.scene.layout import base_pose, draw_layout, make_goals
-from diagrams.scene.leads_to import check_leads_to_things
+from diagrams.scene.leads_to import check_leads_to_items
 from diagrams.scene.open_gripper import gripper_depth, lean, opens_towards, tool_axes
 from diagrams.scene.overlaps import check_overlaps
 from diagrams.scene.scene import RigidItem, Scene, add_scene
-from diagrams.scene.world import Contact, Item, Kind, Region, Robot, Room, Thing, World, check_world
+from diagrams.scene.world import Contact, Fixture, Item, Kind, Region, Robot, Room, World, check_world
 
 __all__ = [
     "Contact",
     "FittedTable",
+    "Fixture",
     "Item",
     "Kind",
     "Region",
@@ -21,11 +22,10 @@ __all__ = [
     "Robot",
     "Room",
     "Scene",
-    "Thing",
     "World",
     "add_scene",
     "base_pose",
-    "check_leads_to_things",
+    "check_leads_to_items",
     "check_overlaps",
     "check_world",
     "draw_layout",

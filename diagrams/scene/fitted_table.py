@@ -22,7 +22,7 @@ from models import LIO_URDF
 from models.make_world import BOARD
 
 EDGE = 0.05
-"""[m] Between the middle of a thing and the table's edge: all of it stands on the table."""
+"""[m] Between the middle of an item and the table's edge: all of it stands on the table."""
 OUTWARDS = (0.06, 0.0, 0.12, -0.06, 0.18, 0.24)
 SIDEWAYS = (0.0, 0.08, -0.08, 0.16, -0.16)
 """Of the table's middle from the disk's, away from the robot's base and across [m], in order of preference."""
@@ -49,7 +49,7 @@ class FittedTable:
     free: np.ndarray
 
     def room(self, start: np.ndarray, angles: np.ndarray) -> np.ndarray:
-        """How far from a point (2,) [m] things may stand in directions `angles` [rad] of B, [m]. Same shape.
+        """How far from a point (2,) [m] items may stand in directions `angles` [rad] of B, [m]. Same shape.
 
         Args:
             start: in B, [m]. Shape (2,).

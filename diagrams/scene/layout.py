@@ -11,11 +11,11 @@ from pydrake.math import RigidTransform, RollPitchYaw
 
 from canal.errors import InputError
 from diagrams.geometry.goals import DrumGoal, Goal, MarkGoal
-from diagrams.scene.world import Region, Robot, Room, Thing, World
+from diagrams.scene.world import Fixture, Region, Robot, Room, World
 
 TRIES, ROUNDS, DEALS = 200, 100, 30
 CARRIED = 0.080
-"""[m] Between the middles of a thing in the hand and of one that stands: the widest measure 0.037, and a hand errs."""
+"""[m] Between the middles of an item in the hand and of one that stands: the widest measure 0.037, and a hand errs."""
 LAYOUT_STREAM = 5
 """Sets this random stream apart from others with the same seed."""
 
@@ -47,7 +47,7 @@ def draw_layout(world: World, seed: int) -> tuple[list[Spot], list[Spot | None]]
     """Draw a start for each item, and a mark for each that has a goal; no two nearer than the scenario's spacing.
 
     Args:
-        world: its items, their regions, and the things that regions lie on.
+        world: its items, their regions, and the fixtures that regions lie on.
         seed: of the draw.
 
     Returns:
@@ -72,8 +72,8 @@ def _draw_ends(rng: np.random.Generator, world: World) -> tuple[list[Spot], list
         rng,
         world,
         [
-            (item.name, "soft_start", item.soft_start)
-            if item.kind == "soft" and item.soft_start is not None
+            (item.name, "deformable_start", item.deformable_start)
+            if item.kind == "soft" and item.deformable_start is not None
             else (item.name, "start", item.start)
             for item in world.items
         ],
@@ -85,7 +85,7 @@ def _draw_ends(rng: np.random.Generator, world: World) -> tuple[list[Spot], list
 
 
 def _draw_all(rng: np.random.Generator, world: World, regions: list[tuple[str, str, Region]]) -> list[Spot]:
-    """A spot in each region (item, key, region), all apart; anew where the first leave no place for the last."""
+    """A spot in each region (item, key, region), all apart; anew where the first leave no position for the last."""
     crowded = ""
     for _ in range(ROUNDS):
         spots: list[Spot] = []
@@ -99,13 +99,13 @@ def _draw_all(rng: np.random.Generator, world: World, regions: list[tuple[str, s
         else:
             return spots
     raise InputError(
-        f"{crowded} leaves no place that is {world.item_spacing:g} m from the others and clear of the fingers; "
+        f"{crowded} leaves no position that is {world.item_spacing:g} m from the others and clear of the fingers; "
         "widen its region, move its center, or lower item_spacing"
     )
 
 
 def _draw(rng: np.random.Generator, world: World, region: Region, others: list[tuple[Spot, Region]]) -> Spot | None:
-    on = next((thing for thing in world.things if thing.name == region.frame), Thing())
+    on = next((fixture for fixture in world.fixtures if fixture.name == region.frame), Fixture())
     X_WT = yaw_pose(on.position, np.deg2rad(on.yaw_deg))
     for _ in range(TRIES):
         shift = _shift(rng, region)
@@ -138,13 +138,13 @@ def reach_at(reach: Sequence[float], angle: float) -> float:
         reach: at equal angles from x on, [m].
         angle: [rad].
     """
-    place = angle * len(reach) / (2 * math.pi)
-    k, share = math.floor(place), place % 1.0
+    sector = angle * len(reach) / (2 * math.pi)
+    k, share = math.floor(sector), sector % 1.0
     return (1.0 - share) * reach[k % len(reach)] + share * reach[(k + 1) % len(reach)]
 
 
 def _clear(apart: np.ndarray, room: Room | None) -> bool:
-    """Whether what lies `apart` [m] leaves a thing the room that the fingers need."""
+    """Whether what lies `apart` [m] leaves an item the room that the fingers need."""
     if room is None:
         return True
     x, y = apart[:2].tolist()
@@ -157,7 +157,7 @@ def hand_above(room: Room, spot: np.ndarray) -> np.ndarray:
 
     Args:
         room: what the fingers take.
-        spot: where the thing lies, from the middle of its region, [m]. Shape (2,).
+        spot: where the item lies, from the middle of its region, [m]. Shape (2,).
     """
     x, y = spot
     return np.array([[dx + a * x - b * y, dy + b * x + a * y] for dx, dy, a, b in room.way]).reshape(-1, 2)
@@ -168,7 +168,7 @@ def in_the_way(room: Room | None, spot: np.ndarray, other: np.ndarray) -> bool:
 
     Args:
         room: what the fingers take about `spot`; None for nothing.
-        spot: where a thing lies, from the middle of its region, [m]. Shape (2,).
+        spot: where an item lies, from the middle of its region, [m]. Shape (2,).
         other: where another lies, likewise. Shape (2,).
     """
     if room is None:
@@ -180,7 +180,7 @@ def in_the_way(room: Room | None, spot: np.ndarray, other: np.ndarray) -> bool:
 def _in_turn(
     rng: np.random.Generator, world: World, starts: list[Spot], marks: list[Spot | None]
 ) -> list[Spot | None] | None:
-    """The marks, dealt so that things can be carried one after the other; None: the hand always meets one.
+    """The marks, dealt so that items can be carried one after the other; None: the hand always meets one.
 
     Where the hand comes down aslant, what stands there has to be taken first, or placed last.
     """
@@ -197,7 +197,7 @@ def _in_turn(
 
 
 def _turns(rng: np.random.Generator, spots: list[Spot], regions: list[Region]) -> list[int] | None:
-    """An order in which things can be taken away, each past those that are still there; None: there is none."""
+    """An order in which items can be taken away, each past those that are still there; None: there is none."""
     left, turns = list(range(len(spots))), []
     seen = [spot.position[:2] - region.center[:2] for spot, region in zip(spots, regions, strict=True)]
     while left:

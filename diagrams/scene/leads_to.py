@@ -1,4 +1,4 @@
-"""Whether a canal leads to the things of a scenario: asked before anything moves."""
+"""Whether a canal leads to the items of a scenario: asked before anything moves."""
 
 from __future__ import annotations
 
@@ -20,16 +20,16 @@ BESIDE = 0.10
 """[m] Further than this beside the disk the open fingers, 0.055 to each side of the TCP, close on nothing."""
 
 
-def check_leads_to_things(world: World, canal: CanalSurface, seed: int) -> None:
-    """Refuse a canal whose pick disk is not where the things lie, or whose place disk is not where they belong.
+def check_leads_to_items(world: World, canal: CanalSurface, seed: int) -> None:
+    """Refuse a canal whose pick disk is not where the items lie, or whose place disk is not where they belong.
 
     Args:
-        world: where things lie and belong.
+        world: where items lie and belong.
         canal: in the robot's base frame.
         seed: of the layout.
 
     Raises:
-        InputError: names the first thing that is too far off, its distance, and what can be done.
+        InputError: names the first item that is too far off, its distance, and what can be done.
     """
     X_BW = base_pose(world.robot).inverse()
     starts, marks = draw_layout(world, seed)
@@ -69,7 +69,7 @@ def _refuse(canal: CanalSurface, disk: int, what: str) -> None:
     x, y, z = canal.center(disk)
     end = "pick" if disk == 0 else "place"
     raise InputError(
-        f"the canal does not lead to the scenario's things: {what} its {end} disk, which is at ({x:.2f}, {y:.2f}, "
-        f"{z:.2f}) m with a radius of {canal.radius(disk):.2f} m; move things or retarget the canal in a --scenario "
+        f"the canal does not lead to the scenario's items: {what} its {end} disk, which is at ({x:.2f}, {y:.2f}, "
+        f"{z:.2f}) m with a radius of {canal.radius(disk):.2f} m; move items or retarget the canal in a --scenario "
         "of your own; without --scenario, run_relocation fits its scene to the canal"
     )

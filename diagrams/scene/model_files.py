@@ -21,7 +21,7 @@ from diagrams.geometry.bounds import BodyBounds, extent
 ENDINGS = (".sdf", ".urdf")
 LARGEST_FILE = 64 * 2**20
 """[bytes] Of a model or a mesh."""
-LARGEST_MASS_KG, LARGEST_ITEM_M, LARGEST_THING_M = 100.0, 2.0, 100.0
+LARGEST_MASS_KG, LARGEST_ITEM_M, LARGEST_FIXTURE_M = 100.0, 2.0, 100.0
 """More than the Lio weighs, than it reaches, than it drives to: what exceeds these was given in other units."""
 POSITIVE = ("size", "radius", "length")
 """Of shapes, in SDFormat and URDF."""
@@ -40,7 +40,7 @@ def check_model(path: Path, folders: Sequence[Path], *, carried: bool) -> None:
     """
     if path.suffix.lower() not in ENDINGS:
         raise InputError(f"{path.name} is no model; give an SDFormat file (.sdf) or a URDF (.urdf)")
-    _check_places(path, [folder.resolve() for folder in folders], set())
+    _check_paths(path, [folder.resolve() for folder in folders], set())
     _check_numbers(path)
     plant = MultibodyPlant(time_step=0.0)
     scene_graph = SceneGraph()
@@ -66,7 +66,10 @@ def check_model(path: Path, folders: Sequence[Path], *, carried: bool) -> None:
     shapes = [e for g in plant.GetCollisionGeometriesForBody(body) if (e := extent(inspector, g)) is not None]
     if not shapes:
         raise InputError(f"{path.name} has no collision shape of finite size; give it at least one")
-    reach, most = np.abs(BodyBounds([shapes])([RigidTransform()])).max(), LARGEST_ITEM_M if carried else LARGEST_THING_M
+    reach, most = (
+        np.abs(BodyBounds([shapes])([RigidTransform()])).max(),
+        LARGEST_ITEM_M if carried else LARGEST_FIXTURE_M,
+    )
     if not reach <= most:
         raise InputError(f"{path.name} reaches {reach:g} m from its origin; give at most {most:g}")
     if carried and not body.default_mass() <= LARGEST_MASS_KG:
@@ -116,7 +119,7 @@ def _number(element: ET.Element, key: str) -> float:
     return number
 
 
-def _check_places(path: Path, folders: Sequence[Path], seen: set[Path]) -> None:
+def _check_paths(path: Path, folders: Sequence[Path], seen: set[Path]) -> None:
     """Refuse a file outside the folders, and any outside that it names."""
     real = path.resolve()
     if real in seen:
@@ -132,7 +135,7 @@ def _check_places(path: Path, folders: Sequence[Path], seen: set[Path]) -> None:
     for name in _named_files(path):
         if ":" in name:
             raise InputError(f"{path.name} names {name!r}; name a file relative to it")
-        _check_places(path.parent / name, folders, seen)
+        _check_paths(path.parent / name, folders, seen)
 
 
 def _named_files(path: Path) -> Iterator[str]:

@@ -1,4 +1,4 @@
-"""Refuses a scene in which one thing lies inside another."""
+"""Refuses a scene in which one body lies inside another."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from pydrake.multibody.plant import MultibodyPlant
 from pydrake.systems.framework import Context
 
 from canal.errors import InputError
-from diagrams.deformable.items import soft_mesh
+from diagrams.deformable.items import deformable_mesh
 from diagrams.deformable.tet_mesh import TetMesh, embed
 from diagrams.geometry.bounds import BodyBounds, extent
 from diagrams.geometry.contacts import collision_shapes
@@ -21,7 +21,7 @@ OVERLAP = 0.003
 
 
 def check_overlaps(*, plant: MultibodyPlant, scene_graph: SceneGraph, root: Context, scene: Scene) -> None:
-    """Refuse a scene in which one thing lies inside another.
+    """Refuse a scene in which one body lies inside another.
 
     Args:
         plant: finalized.
@@ -34,12 +34,12 @@ def check_overlaps(*, plant: MultibodyPlant, scene_graph: SceneGraph, root: Cont
     """
     query = scene_graph.get_query_output_port().Eval(scene_graph.GetMyContextFromRoot(root))
     solids: list[tuple[str, list[GeometryId]]] = [("lio", collision_shapes(plant, [scene.lio]))]
-    for name, models in scene.things.items():
+    for name, models in scene.fixtures.items():
         solids += [(name, collision_shapes(plant, [model])) for model in models]
     solids += [(i.name, list(plant.GetCollisionGeometriesForBody(i.body))) for i in scene.rigid_items]
     _check_solids(query, solids)
     context = plant.GetMyContextFromRoot(root)
-    _check_cloth(query, solids, {i.name: soft_mesh(plant, context, i) for i in scene.soft_items})
+    _check_cloth(query, solids, {i.name: deformable_mesh(plant, context, i) for i in scene.deformable_items})
 
 
 def _check_solids(query: QueryObject, solids: list[tuple[str, list[GeometryId]]]) -> None:

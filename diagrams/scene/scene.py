@@ -1,4 +1,4 @@
-"""The scene of a scenario: robot, things, items and marks in a MultibodyPlant, before it is finalized."""
+"""The scene of a scenario: robot, fixtures, items and marks in a MultibodyPlant, before it is finalized."""
 
 from __future__ import annotations
 
@@ -11,11 +11,11 @@ from pydrake.multibody.parsing import Parser
 from pydrake.multibody.plant import MultibodyPlant
 from pydrake.multibody.tree import BodyIndex, ModelInstanceIndex, RigidBody
 
-from diagrams.deformable.items import SoftItem, add_soft_item
+from diagrams.deformable.items import DeformableItem, add_deformable_item
 from diagrams.deformable.laundry import make_shape
 from diagrams.geometry.bounds import BodyBounds, Extent, extent
 from diagrams.scene.layout import Spot, base_pose, draw_layout, yaw_pose
-from diagrams.scene.world import Item, Robot, Thing, World
+from diagrams.scene.world import Fixture, Item, Robot, World
 from models import LIO_URDF, MODELS
 
 DROP = 0.001
@@ -51,9 +51,9 @@ class Scene:
     world: World
     lio: ModelInstanceIndex
     X_WB: RigidTransform
-    things: dict[str, list[ModelInstanceIndex]] = field(default_factory=dict)
-    """By name; things that share a name are watched as one."""
-    items: list[RigidItem | SoftItem] = field(default_factory=list)
+    fixtures: dict[str, list[ModelInstanceIndex]] = field(default_factory=dict)
+    """By name; fixtures that share a name are watched as one."""
+    items: list[RigidItem | DeformableItem] = field(default_factory=list)
     """In the order of the world."""
     marks: list[Spot | None] = field(default_factory=list)
     rest_heights: list[float] = field(default_factory=list)
@@ -65,9 +65,9 @@ class Scene:
         return [item for item in self.items if isinstance(item, RigidItem)]
 
     @property
-    def soft_items(self) -> list[SoftItem]:
+    def deformable_items(self) -> list[DeformableItem]:
         """Those that are deformable."""
-        return [item for item in self.items if isinstance(item, SoftItem)]
+        return [item for item in self.items if isinstance(item, DeformableItem)]
 
 
 def add_lio(plant: MultibodyPlant, robot: Robot) -> tuple[ModelInstanceIndex, RigidTransform]:
@@ -102,8 +102,8 @@ def add_scene(
     """
     lio, X_WB = add_lio(plant, world.robot)
     scene = Scene(world, lio, X_WB)
-    for k, thing in enumerate(world.things):
-        scene.things.setdefault(thing.name, []).append(_add_thing(plant, world, thing, k))
+    for k, fixture in enumerate(world.fixtures):
+        scene.fixtures.setdefault(fixture.name, []).append(_add_fixture(plant, world, fixture, k))
     starts, scene.marks = draw_layout(world, seed)
     for item, start in zip(world.items, starts, strict=True):
         height, handle = _add_item(plant, scene_graph, world, item, start, filmed)
@@ -122,25 +122,25 @@ def add_scene(
 PAPER = np.array([0.97, 0.96, 0.92, 1.0])
 
 
-def _add_thing(plant: MultibodyPlant, world: World, thing: Thing, k: int) -> ModelInstanceIndex:
-    path = world.resolve(thing.model, MODELS / "world", ".sdf")
-    (model,) = Parser(plant, f"thing{k}").AddModels(str(path))
+def _add_fixture(plant: MultibodyPlant, world: World, fixture: Fixture, k: int) -> ModelInstanceIndex:
+    path = world.resolve(fixture.model, MODELS / "world", ".sdf")
+    (model,) = Parser(plant, f"fixture{k}").AddModels(str(path))
     (body,) = plant.GetBodyIndices(model)
-    X = yaw_pose(thing.position, np.deg2rad(thing.yaw_deg))
+    X = yaw_pose(fixture.position, np.deg2rad(fixture.yaw_deg))
     plant.WeldFrames(plant.world_frame(), plant.get_body(body).body_frame(), X)
     return model
 
 
 def _add_item(
     plant: MultibodyPlant, scene_graph: SceneGraph, world: World, item: Item, start: Spot, filmed: bool
-) -> tuple[float, RigidItem | SoftItem]:
+) -> tuple[float, RigidItem | DeformableItem]:
     """Add one item where it starts; returns also the height of its origin above what it stands on."""
     X = yaw_pose(start.position, start.yaw)
     if item.kind == "soft":
         shape = make_shape(item.model)
         height = -float(shape.mesh.vertices[:, 2].min())
         X.set_translation(start.position + [0, 0, height + DROP])
-        return height, add_soft_item(plant=plant, name=item.name, shape=shape, X_WP=X, filmed=filmed)
+        return height, add_deformable_item(plant=plant, name=item.name, shape=shape, X_WP=X, filmed=filmed)
     path = world.resolve(item.model, MODELS / "items", ".sdf")
     (model,) = Parser(plant, f"item_{item.name}").AddModels(str(path))
     (index,) = plant.GetBodyIndices(model)

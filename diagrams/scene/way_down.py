@@ -12,11 +12,11 @@ from diagrams.scene.world import Room
 
 HEIGHTS = (0.025, 0.05, 0.075)
 """[m] Of the gripper above where it closes, at which its way is looked at: from 0.067 on, the tips of the open fingers
-are above the tallest thing, the cup, which stands 0.050 higher than the middle of the gripper."""
+are above the tallest item, the cup, which stands 0.050 higher than the middle of the gripper."""
 FINGERS_ACROSS = 0.060
-"""[m] Half a finger's width, the radius of another thing, and what a hand errs by."""
+"""[m] Half a finger's width, the radius of another item, and what a hand errs by."""
 TALL = 0.035
-"""Of what stands beside the thing that is gripped, above the TCP [m]: a gripper that leans comes over it."""
+"""Of what stands beside the item that is gripped, above the TCP [m]: a gripper that leans comes over it."""
 MOST_LEAN = math.radians(50.0)
 """How far off straight down the gripper may point at an end: beyond it the hand comes down on what lies next to it."""
 SPOKES = 12
@@ -25,7 +25,7 @@ RING = 0.9
 
 
 def room_at(canal: CanalSurface, disk: int) -> Room:
-    """What the fingers need about a thing at the first or the last disk, and how they come down on it; in B.
+    """What the fingers need about an item at the first or the last disk, and how they come down on it; in B.
 
     Args:
         canal: in the robot's base frame.

@@ -1,4 +1,4 @@
-"""What stands where: the robot, the things around it, what it carries, and how contact is computed."""
+"""What stands where: the robot, the fixtures around it, what it carries, and how contact is computed."""
 
 from dataclasses import field, replace
 from pathlib import Path
@@ -38,11 +38,11 @@ class Robot:
 
 
 @options()
-class Thing:
-    """A piece of the surroundings, welded to the world."""
+class Fixture:
+    """A part of the surroundings, welded to the world."""
 
     name: str = ""
-    """Names the contact pair `lio-NAME`; several things may share a name, and count as one."""
+    """Names the contact pair `lio-NAME`; several fixtures may share a name, and count as one."""
     model: str = ""
     """An SDFormat file of models/world, without its ending, or a path beside the scenario."""
     position: Position = field(default_factory=lambda: [0.0, 0.0, 0.0])
@@ -55,25 +55,25 @@ HalfWidth = Annotated[float, Field(ge=0, le=10)]
 
 @options()
 class Room:
-    """What open fingers take about a thing: the middle of no other thing lies in this rectangle around it."""
+    """What open fingers take about an item: the middle of no other item lies in this rectangle around it."""
 
     yaw_deg: Angle = 0.0
     """Direction in which the fingers open, about z of W."""
     along: HalfWidth = 0.145
-    """Half its extent in that direction [m]: open fingers reach 0.094, another thing 0.042, and a hand errs by 8 mm."""
+    """Half its extent in that direction [m]: open fingers reach 0.094, another item 0.042, and a hand errs by 8 mm."""
     across: HalfWidth = 0.065
     """Half its extent across it [m]: fingers are 0.03 wide. More, the more the gripper leans."""
     way: list[Annotated[list[Coordinate], Field(min_length=4, max_length=4)]] = field(default_factory=list)
-    """How the hand comes down, as long as it is lower than things are tall: (dx, dy, a, b) for some heights. On its way
+    """How the hand comes down, as long as it is lower than items are tall: (dx, dy, a, b) for some heights. On its way
     to (x, y), seen from the region's middle, it is above (dx + a x - b y, dy + b x + a y) [m]. Empty: straight down."""
 
 
 @options()
 class Region:
-    """Where a thing may lie, on a horizontal surface: a rectangle, or what lies within reach of a point."""
+    """Where an item may lie, on a horizontal surface: a rectangle, or what lies within reach of a point."""
 
     frame: str = ""
-    """The thing in whose frame the rectangle is given, so that it goes where the thing goes; empty: in W."""
+    """The fixture in whose frame the rectangle is given, so that it goes where the fixture goes; empty: in W."""
     center: Position = field(default_factory=lambda: [0.0, 0.0, 0.0])
     """Its middle, z on the surface [m]."""
     half_widths: Annotated[list[HalfWidth], Field(min_length=2, max_length=2)] = field(
@@ -88,20 +88,20 @@ class Region:
     )
     """Least and largest turn about z."""
     room: Room | None = None
-    """What the fingers need around the thing; None: `item_spacing` alone."""
+    """What the fingers need around the item; None: `item_spacing` alone."""
 
 
 @options()
 class Item:
-    """A thing to carry."""
+    """What is carried."""
 
     name: str = ""
     model: str = ""
-    """An SDFormat file of models/items, without its ending; for soft ones the kind of cloth, of the same name."""
+    """An SDFormat file of models/items, without its ending; for deformable ones the kind of cloth, of the same name."""
     kind: Kind = "rigid"
     start: Region = field(default_factory=Region)
-    soft_start: Region | None = None
-    """The same for the soft one, which is longer; None: `start`."""
+    deformable_start: Region | None = None
+    """The same for the deformable one, which is longer; None: `start`."""
     goal: Region | None = None
     """Where its mark lies (relocation); without one it belongs into the drum."""
     upright: bool = False
@@ -115,7 +115,7 @@ class Drum:
     center: Position = field(default_factory=lambda: [0.0, 0.85, 0.55])
     """Centre of the door's plane in W [m]."""
     inward: Annotated[Position, AfterValidator(_axis)] = field(default_factory=lambda: [0.0, 1.0, 0.0])
-    """The drum's axis, into the machine: along an axis of W, as the things' bounds are. Turn the robot instead."""
+    """The drum's axis, into the machine: along an axis of W, as the items' bounds are. Turn the robot instead."""
     depth: Annotated[float, Field(gt=0, le=10)] = 0.34
     radius: Annotated[float, Field(gt=0, le=10)] = 0.25
 
@@ -126,27 +126,27 @@ class Contact:
 
     time_step: Annotated[float, Field(ge=1e-4, le=0.01)] = 1 / 240
     """Of the plant [s]: four steps in a tick of 60 Hz, twelve in a sample of the stick. With 5 ms what topples sinks
-    into the drum by up to 5.1 mm instead of 4.6 with 4 ms, a rigid piece in 60 slips by 3 mm in a carry instead of at
+    into the drum by up to 5.1 mm instead of 4.6 with 4 ms, a rigid item in 60 slips by 3 mm in a carry instead of at
     most 2, and a run takes a sixth less time. With 10 ms they slip by 5 mm."""
     approximation: Literal["lagged", "similar", "sap"] | None = None
-    """None: `lagged` where there is cloth, else `sap`, with which rigid pieces creep half as far in the hand."""
+    """None: `lagged` where there is cloth, else `sap`, with which rigid items creep half as far in the hand."""
     model: Literal["hydroelastic_with_fallback", "point"] = "hydroelastic_with_fallback"
     stiction_tolerance: Annotated[float, Field(ge=1e-6, le=0.1)] = 2e-4
     """Speed [m/s] below which friction holds; what is held creeps at up to this. In a carry of 20 s cloth slips by 1 to
-    2 mm; half of it takes a tenth more time; with Drake's default of 1e-3 a held piece creeps 2.5 times as far. `sap`
+    2 mm; half of it takes a tenth more time; with Drake's default of 1e-3 a held item creeps 2.5 times as far. `sap`
     does not ask for it."""
 
-    def for_items(self, soft: bool) -> "Contact":
-        """With what fits cloth, or rigid things, where nothing is said."""
-        return replace(self, approximation=self.approximation or ("lagged" if soft else "sap"))
+    def for_items(self, deformable: bool) -> "Contact":
+        """With what fits cloth, or rigid items, where nothing is said."""
+        return replace(self, approximation=self.approximation or ("lagged" if deformable else "sap"))
 
 
 @options()
 class World:
-    """A robot among things, with items to carry."""
+    """A robot among fixtures, with items to carry."""
 
     robot: Robot = field(default_factory=Robot)
-    things: list[Thing] = field(default_factory=list)
+    fixtures: list[Fixture] = field(default_factory=list)
     items: list[Item] = field(default_factory=list)
     item_spacing: Annotated[float, Field(ge=0, le=10)] = 0.13
     """Least distance between the middles of two items, and of two marks, at the start [m]: the open fingers fit."""
@@ -187,19 +187,19 @@ def check_world(world: World) -> None:
     Raises:
         InputError: with the key, its value and what it may be.
     """
-    fixtures, names = [thing.name for thing in world.things], [item.name for item in world.items]
-    for k, thing in enumerate(world.things):
-        _check_model(world, f"things[{k}].model", thing.model, carried=False)
+    frames, names = [fixture.name for fixture in world.fixtures], [item.name for item in world.items]
+    for k, fixture in enumerate(world.fixtures):
+        _check_model(world, f"fixtures[{k}].model", fixture.model, carried=False)
     if not world.items:
-        raise InputError("items is empty; give at least one thing to carry")
+        raise InputError("items is empty; give at least one item to carry")
     for item in world.items:
         if not item.name or names.count(item.name) > 1:
             raise InputError(f"items.name is {item.name!r}; give each item a name of its own")
         _check_model(world, f"items.{item.name}.model", item.model, carried=True)
-        for key in ("start", "soft_start", "goal"):
+        for key in ("start", "deformable_start", "goal"):
             region = getattr(item, key)
-            if region is not None and region.frame and region.frame not in fixtures:
-                known = ", ".join(fixtures)
+            if region is not None and region.frame and region.frame not in frames:
+                known = ", ".join(frames)
                 raise InputError(f"items.{item.name}.{key}.frame is {short(region.frame)}; use one of {known}")
         if item.goal is None and world.drum is None:
             raise InputError(f"items.{item.name} has no goal, and there is no drum; give one of them")

@@ -10,7 +10,7 @@ from pydrake.geometry import GeometryId, QueryObject, SceneGraph
 from pydrake.multibody.plant import ContactResults, MultibodyPlant
 from pydrake.systems.framework import BasicVector, Context, LeafSystem, ValueProducer
 
-from diagrams.deformable.items import SoftItem
+from diagrams.deformable.items import DeformableItem
 from diagrams.geometry.box_depth import FixedBoxes
 from diagrams.geometry.contacts import each_contact, is_contact
 from diagrams.scene.scene import RigidItem, Scene
@@ -21,7 +21,7 @@ HAND = ("lio_link_5", "lio_link_6", "lio_gripper", "lio_finger_left", "lio_finge
 
 
 class ContactSensor(LeafSystem):
-    """Watches the robot against each thing of the surroundings.
+    """Watches the robot against each fixture.
 
     ```
                        ┌───────────────┐ → contact_forces (pairs) [N]
@@ -41,17 +41,17 @@ class ContactSensor(LeafSystem):
     def __init__(self, plant: MultibodyPlant, scene_graph: SceneGraph, scene: Scene) -> None:
         """Watch the scene; names of the pairs are then in `contact_pairs`, of the robot's bodies in `robot_bodies`."""
         super().__init__()
-        self.contact_pairs = [f"lio-{name}" for name in scene.things]
+        self.contact_pairs = [f"lio-{name}" for name in scene.fixtures]
         bodies = plant.GetBodyIndices(scene.lio)
         self._lio = {int(b): k for k, b in enumerate(bodies)}
         self.robot_bodies = [plant.get_body(b).name() for b in bodies]
         self._hand = {int(b) for b in bodies if plant.get_body(b).name() in HAND}
         self._fingers = {int(b) for b in bodies if plant.get_body(b).name() in FINGERS}
         self._R_BW = scene.X_WB.rotation().inverse()
-        self._thing_of_body: dict[int, int] = {}
-        for k, models in enumerate(scene.things.values()):
+        self._fixture_of_body: dict[int, int] = {}
+        for k, models in enumerate(scene.fixtures.values()):
             for model in models:
-                self._thing_of_body.update({int(b): k for b in plant.GetBodyIndices(model)})
+                self._fixture_of_body.update({int(b): k for b in plant.GetBodyIndices(model)})
         inspector = scene_graph.model_inspector()
         self._body: dict[GeometryId, int] = {
             g: int(plant.GetBodyFromFrameId(inspector.GetFrameId(g)).index()) for g in inspector.GetAllGeometryIds()
@@ -59,9 +59,9 @@ class ContactSensor(LeafSystem):
         # Not by the plant's `GetCollisionGeometriesForBody`: the ids that it gives keep the plant, and with it this.
         item_of_body = {int(item.index): k for k, item in enumerate(scene.items) if isinstance(item, RigidItem)}
         self._item_of = {g: item_of_body[body] for g, body in self._body.items() if body in item_of_body}
-        self._item_of |= {item.geometry_id: k for k, item in enumerate(scene.items) if isinstance(item, SoftItem)}
-        self._soft = scene.soft_items
-        self._boxes = FixedBoxes(plant, inspector, [model for models in scene.things.values() for model in models])
+        self._item_of |= {item.geometry_id: k for k, item in enumerate(scene.items) if isinstance(item, DeformableItem)}
+        self._deformable = scene.deformable_items
+        self._boxes = FixedBoxes(plant, inspector, [model for models in scene.fixtures.values() for model in models])
         self._results = self.DeclareAbstractInputPort("contact_results", Value[ContactResults]())
         self._query = self.DeclareAbstractInputPort("geometry_query", Value[QueryObject]())
         pairs, n, contacts = len(self.contact_pairs), len(scene.items), {self._results.ticket()}
@@ -104,7 +104,7 @@ class ContactSensor(LeafSystem):
             if item is not None:
                 grips[item] += np.linalg.norm(force)
                 continue
-            pair = self._thing_of_body[other if body in self._lio else body]
+            pair = self._fixture_of_body[other if body in self._lio else body]
             if body not in self._lio:
                 body, force = other, -force
             of_bodies.setdefault(pair, np.zeros(len(self.robot_bodies)))[self._lio[body]] += np.linalg.norm(force)
@@ -122,8 +122,8 @@ class ContactSensor(LeafSystem):
             return other in self._fingers
         if b in self._item_of:
             return body in self._fingers
-        return (body in self._lio and other in self._thing_of_body) or (
-            other in self._lio and body in self._thing_of_body
+        return (body in self._lio and other in self._fixture_of_body) or (
+            other in self._lio and body in self._fixture_of_body
         )
 
     def _part(self, context: Context, begin: int, end: int) -> np.ndarray:
@@ -147,8 +147,8 @@ class ContactSensor(LeafSystem):
         depths = [
             o.depth
             for o in overlaps
-            if self._body[o.id_A] in self._thing_of_body or self._body[o.id_B] in self._thing_of_body
+            if self._body[o.id_A] in self._fixture_of_body or self._body[o.id_B] in self._fixture_of_body
         ]
-        for item in self._soft:
+        for item in self._deformable:
             depths.append(self._boxes.depth(query.GetConfigurationsInWorld(item.geometry_id).reshape(-1, 3)))
         output.SetAtIndex(0, max(depths, default=0.0))

@@ -1,4 +1,4 @@
-"""Where the items are: poses, bounds and speeds, of rigid and of soft ones alike."""
+"""Where the items are: poses, bounds and speeds, of rigid and of deformable ones alike."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from pydrake.math import RigidTransform
 from pydrake.multibody.math import SpatialVelocity
 from pydrake.systems.framework import BasicVector, Context, DiscreteValues, LeafSystem
 
-from diagrams.deformable.items import SoftItem
+from diagrams.deformable.items import DeformableItem
 from diagrams.geometry.bounds import BodyBounds
 from diagrams.geometry.pose_vector import pose_to_vector
 from diagrams.scene.scene import RigidItem, Scene
@@ -26,15 +26,15 @@ class ItemSensor(LeafSystem):
       geometry_query → └────────────┘ → item_speeds (n: of the middle [m/s])
     ```
 
-    A soft item's pose is the mean of its nodes, not turned; its speed is that of the mean over the last 10 ms.
+    A deformable item's pose is the mean of its nodes, not turned; its speed is that of the mean over the last 10 ms.
     """
 
     def __init__(self, scene: Scene) -> None:
         """Read the items of a scene whose plant is finalized."""
         super().__init__()
         self._items = scene.items
-        self._soft = [k for k, item in enumerate(scene.items) if isinstance(item, SoftItem)]
-        self._soft_items = scene.soft_items
+        self._deformable = [k for k, item in enumerate(scene.items) if isinstance(item, DeformableItem)]
+        self._deformable_items = scene.deformable_items
         self._rigid = [k for k, item in enumerate(scene.items) if isinstance(item, RigidItem)]
         self._bodies = [int(item.index) for item in scene.rigid_items]
         self._rigid_bounds = BodyBounds([item.extents for item in scene.rigid_items]) if self._rigid else None
@@ -42,15 +42,15 @@ class ItemSensor(LeafSystem):
         self._poses = self.DeclareAbstractInputPort("body_poses", AbstractValue.Make([RigidTransform()]))
         self._velocities = self.DeclareAbstractInputPort("body_velocities", AbstractValue.Make([SpatialVelocity()]))
         self._query = self.DeclareAbstractInputPort("geometry_query", Value[QueryObject]())
-        # Middles of the soft items, before and now; NaN until measured.
-        self._middles = self.DeclareDiscreteState(np.full(6 * len(self._soft), np.nan))
+        # Middles of the deformable items, before and now; NaN until measured.
+        self._middles = self.DeclareDiscreteState(np.full(6 * len(self._deformable), np.nan))
         self.DeclareVectorOutputPort("item_poses", 7 * n, self._calc_poses)
         self.DeclareVectorOutputPort("item_bounds", 6 * n, self._calc_bounds)
         self.DeclareVectorOutputPort("item_speeds", n, self._calc_speeds)
-        if self._soft:
+        if self._deformable:
             self.DeclarePeriodicDiscreteUpdateEvent(PERIOD, 0.0, self._update)
 
-    def _nodes(self, context: Context, item: SoftItem) -> np.ndarray:
+    def _nodes(self, context: Context, item: DeformableItem) -> np.ndarray:
         query = self._query.Eval(context)
         return query.GetConfigurationsInWorld(item.geometry_id).reshape(-1, 3)
 
@@ -69,7 +69,7 @@ class ItemSensor(LeafSystem):
         if self._rigid_bounds is not None:
             poses = self._poses.Eval(context)
             bounds[self._rigid] = self._rigid_bounds([poses[body] for body in self._bodies])
-        for k, item in zip(self._soft, self._soft_items, strict=True):
+        for k, item in zip(self._deformable, self._deformable_items, strict=True):
             nodes = self._nodes(context, item)
             bounds[k] = (*nodes.min(axis=0), *nodes.max(axis=0))
         output.SetFromVector(bounds.ravel())
@@ -80,13 +80,13 @@ class ItemSensor(LeafSystem):
         for k, item in enumerate(self._items):
             if isinstance(item, RigidItem):
                 speeds[k] = np.linalg.norm(velocities[int(item.index)].translational())
-        if self._soft:
+        if self._deformable:
             before, now = context.get_discrete_state(self._middles).value().reshape(2, -1, 3)
             moved = np.linalg.norm(now - before, axis=1) / PERIOD
-            speeds[self._soft] = np.where(np.isfinite(moved), moved, 0.0)
+            speeds[self._deformable] = np.where(np.isfinite(moved), moved, 0.0)
         output.SetFromVector(speeds)
 
     def _update(self, context: Context, discrete: DiscreteValues) -> None:
         now = context.get_discrete_state(self._middles).value().reshape(2, -1)[1]
-        nodes = [self._nodes(context, item) for item in self._soft_items]
+        nodes = [self._nodes(context, item) for item in self._deformable_items]
         discrete.set_value(self._middles, np.concatenate([now, *(p.mean(axis=0) for p in nodes)]))

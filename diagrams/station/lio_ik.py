@@ -1,4 +1,4 @@
-"""The Lio among a scenario's solid things, for the inverse kinematics to keep clear of."""
+"""The Lio among a scenario's fixtures, for the inverse kinematics to avoid collisions with."""
 
 from dataclasses import replace
 
@@ -21,9 +21,9 @@ def _within_drives(options: IkOptions, arm: MultibodyPlant) -> IkOptions:
 
 
 def make_lio_solver(world: World, options: IkOptions) -> IkSolver:
-    """The solver that a scenario asks for: of the arm alone, or of the arm among its things when it keeps clear.
+    """The solver that a scenario asks for: of the arm alone, or among the fixtures, to avoid them.
 
-    The things to carry are left out: they move, and are there to be touched.
+    The items to carry are left out: they move, and are there to be touched.
 
     Args:
         world: where the base stands, and what stands around it.
@@ -34,7 +34,7 @@ def make_lio_solver(world: World, options: IkOptions) -> IkSolver:
     """
     arm = make_arm_plant()
     options = _within_drives(options, arm)
-    if options.keep_clear is None:
+    if options.collision_avoidance is None:
         return IkSolver(arm, TCP_FRAME, options)
     builder = DiagramBuilder()
     plant, scene_graph = AddMultibodyPlantSceneGraph(builder, 0.0)

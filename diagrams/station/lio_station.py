@@ -36,7 +36,7 @@ ROTOR_INERTIA = 0.02
 
 
 class LioStation(Diagram):
-    """The robot among things, to be commanded like the real one.
+    """The robot among fixtures and items, to be commanded like the real one.
 
     ```
      desired_state (12: q, v) → ┌────────────┐ → q (6), v (6), gripper_state (2: angle, rate), X_BT (7)
@@ -56,12 +56,12 @@ class LioStation(Diagram):
         `filmed`: whether cameras will look at it.
 
         Raises:
-            InputError: a model does not exist, items do not fit, things overlap, or `q0` is beyond a limit.
+            InputError: a model does not exist, items do not fit, items overlap, or `q0` is beyond a limit.
         """
         super().__init__()
         builder = DiagramBuilder()
-        soft = any(item.kind == "soft" for item in world.items)
-        plant, scene_graph = AddMultibodyPlant(plant_config(world.contact.for_items(soft)), builder)
+        deformable = any(item.kind == "soft" for item in world.items)
+        plant, scene_graph = AddMultibodyPlant(plant_config(world.contact.for_items(deformable)), builder)
         self.plant: MultibodyPlant = plant
         self.scene_graph: SceneGraph = scene_graph
         self.scene: Scene = add_scene(plant=plant, scene_graph=scene_graph, world=world, seed=seed, filmed=filmed)
@@ -69,8 +69,8 @@ class LioStation(Diagram):
         lio = self.scene.lio
         set_drives(plant, lio)
         plant.set_gravity_enabled(lio, False)
-        if self.scene.soft_items:
-            machine = self.scene.things.get("machine", [])
+        if self.scene.deformable_items:
+            machine = self.scene.fixtures.get("machine", [])
             prepare_for_cloth(plant=plant, scene_graph=scene_graph, robot=lio, fallen_into=machine)
         plant.Finalize()
         drive = make_drive(plant, q0, period=in_step(1.0 / world.control_rate_hz))

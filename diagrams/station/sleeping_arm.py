@@ -1,4 +1,4 @@
-"""The arm rests, too: while nobody commands it and nothing near it moves, its joints are locked.
+"""The arm sleeps, too: while nobody commands it and nothing near it moves, its joints are locked.
 
 Locking is a parameter of the plant; what the arm was commanded to do when it fell asleep, since when, and what touched
 it then are state of `Standing`. It wakes on the first step of the plant that would have another command, with the
@@ -19,7 +19,7 @@ STANDS = 0.5
 """[s] A command that has not changed for so long is one to stand still: some twenty time constants of the drives."""
 ARM_STILL = 2e-3
 """[rad/s] An arm that nobody commands and that is no faster than this stands. One that presses on a table with 360 N
-creeps with 0.5 to 0.8 mrad/s; at its tool this is as much as `resting_piece.STILL`."""
+creeps with 0.5 to 0.8 mrad/s; at its tool this is as much as `sleeping_item.STILL`."""
 AWAKE, WAKING, ASLEEP, CALLED = 0.0, 1.0, 2.0, 3.0
 """Awake; awake since the last step of the plant; asleep; asleep and told something else."""
 
@@ -117,8 +117,8 @@ class Standing(LeafSystem):
         return [*desired.Eval(context).tolist(), gripper.Eval(context).item(0)]
 
 
-class RestingArm:
-    """The arm and its gripper as something that can rest. Contexts are of the diagram that the plant is in."""
+class SleepingArm:
+    """The arm and its gripper as something that can sleep. Contexts are of the diagram that the plant is in."""
 
     def __init__(self, plant: MultibodyPlant, robot: ModelInstanceIndex, standing: Standing) -> None:
         self._plant, self._robot, self._standing = plant, robot, standing
@@ -139,12 +139,12 @@ class RestingArm:
         return stage >= ASLEEP, stage == CALLED
 
     def stands(self, root: Context) -> bool:
-        """Whether it could rest, for all that is known of it alone."""
+        """Whether it could sleep, for all that is known of it alone."""
         stands = self._standing.stands_for(self._standing.GetMyMutableContextFromRoot(root)) >= STANDS - 1e-9
         plant_context = self._plant.GetMyContextFromRoot(root)
         return stands and bool(np.abs(self._plant.GetVelocities(plant_context, self._robot)).max() < ARM_STILL)
 
-    def rest(self, root: Context) -> None:
+    def sleep(self, root: Context) -> None:
         """Lock it as it is."""
         self._standing.set_stage(self._standing.GetMyMutableContextFromRoot(root), ASLEEP)
         context = self._plant.GetMyMutableContextFromRoot(root)

@@ -1,8 +1,8 @@
-"""One piece that can rest: fixed where it lies, still there for what falls on it, and not computed.
+"""One item that can sleep: fixed where it lies, still there for what falls on it, and not computed.
 
-A resting rigid piece is locked (`RigidBody.Lock`), which leaves its shape where it is. A resting soft one is disabled
-(`DeformableModel.Disable`), and then Drake no longer lets anything touch it: what is touched in its place is its
-*cast*, a solid of the same tetrahedra, fixed to the world, that takes the piece's shape each time it comes to rest.
+A sleeping rigid item is locked (`RigidBody.Lock`), which leaves its shape where it is. A sleeping deformable one is
+disabled (`DeformableModel.Disable`), and Drake then computes no contact with it. Its *collision proxy* is touched
+instead: a solid of the same tetrahedra, fixed to the world, that takes the item's shape each time it falls asleep.
 """
 
 from __future__ import annotations
@@ -17,12 +17,12 @@ from pydrake.multibody.plant import MultibodyPlant
 from pydrake.multibody.tree import UniformGravityFieldElement
 from pydrake.systems.framework import Context
 
-from diagrams.deformable.items import SoftItem, drake_mesh, soft_mesh, soft_velocities
+from diagrams.deformable.items import DeformableItem, deformable_mesh, deformable_velocities, drake_mesh
 from diagrams.scene.scene import RigidItem
 
 
-class Piece(Protocol):
-    """What rest needs to know of a piece, and do to it. Contexts are the plant's, but for `root`, the diagram's."""
+class SleepingItem(Protocol):
+    """What sleep needs to know of an item, and does to it. Contexts are the plant's, but for `root`, the diagram's."""
 
     @property
     def own(self) -> list[GeometryId]:
@@ -30,8 +30,8 @@ class Piece(Protocol):
         ...
 
     @property
-    def at_rest(self) -> list[GeometryId]:
-        """What is in their place while it rests."""
+    def asleep(self) -> list[GeometryId]:
+        """What stands in for them while it sleeps."""
         ...
 
     @property
@@ -57,36 +57,36 @@ class Piece(Protocol):
         """Simulate it from now on."""
         ...
 
-    def rest(self, root: Context) -> None:
+    def sleep(self, root: Context) -> None:
         """Fix it where it is."""
         ...
 
 
 @dataclass(frozen=True)
-class SoftPiece:
-    """A deformable body and its cast."""
+class SleepingDeformable:
+    """A deformable body and its collision proxy."""
 
     plant: MultibodyPlant
     scene_graph: SceneGraph
-    item: SoftItem
+    item: DeformableItem
 
     @property
     def own(self) -> list[GeometryId]:
-        """See `Piece`."""
+        """See `SleepingItem`."""
         return [self.item.geometry_id]
 
     @property
-    def at_rest(self) -> list[GeometryId]:
-        """See `Piece`."""
-        return [self.item.cast_id]
+    def asleep(self) -> list[GeometryId]:
+        """See `SleepingItem`."""
+        return [self.item.collision_proxy_id]
 
     @property
     def weight(self) -> float:
-        """See `Piece`."""
+        """See `SleepingItem`."""
         return UniformGravityFieldElement.kDefaultStrength * self.item.shape.mass
 
     def speed(self, context: Context, size: float) -> float:
-        """See `Piece`.
+        """See `SleepingItem`.
 
         Args:
             context: of the plant.
@@ -94,27 +94,29 @@ class SoftPiece:
         """
         if not self.is_awake(context):
             return 0.0
-        return float(np.sqrt((soft_velocities(self.plant, context, self.item) ** 2).sum(axis=1).max()))
+        return float(np.sqrt((deformable_velocities(self.plant, context, self.item) ** 2).sum(axis=1).max()))
 
     def is_awake(self, context: Context) -> bool:
-        """See `Piece`."""
+        """See `SleepingItem`."""
         return self.plant.deformable_model().is_enabled(self.item.body_id, context)
 
     def wake(self, root: Context) -> None:
-        """See `Piece`."""
+        """See `SleepingItem`."""
         self.plant.deformable_model().Enable(self.item.body_id, self.plant.GetMyMutableContextFromRoot(root))
 
-    def rest(self, root: Context) -> None:
-        """See `Piece`."""
+    def sleep(self, root: Context) -> None:
+        """See `SleepingItem`."""
         context = self.plant.GetMyMutableContextFromRoot(root)
         self.plant.deformable_model().Disable(self.item.body_id, context)
-        cast = drake_mesh(soft_mesh(self.plant, context, self.item), f"{self.item.name}_cast")
+        proxy = drake_mesh(deformable_mesh(self.plant, context, self.item), f"{self.item.name}_proxy")
         geometry = self.scene_graph.GetMyMutableContextFromRoot(root)
-        self.scene_graph.ChangeShape(geometry, self.plant.get_source_id(), self.item.cast_id, cast, RigidTransform())
+        self.scene_graph.ChangeShape(
+            geometry, self.plant.get_source_id(), self.item.collision_proxy_id, proxy, RigidTransform()
+        )
 
 
 @dataclass(frozen=True)
-class RigidPiece:
+class SleepingRigid:
     """A rigid body."""
 
     plant: MultibodyPlant
@@ -122,21 +124,21 @@ class RigidPiece:
 
     @property
     def own(self) -> list[GeometryId]:
-        """See `Piece`."""
+        """See `SleepingItem`."""
         return self.plant.GetCollisionGeometriesForBody(self.item.body)
 
     @property
-    def at_rest(self) -> list[GeometryId]:
-        """See `Piece`."""
+    def asleep(self) -> list[GeometryId]:
+        """See `SleepingItem`."""
         return self.own
 
     @property
     def weight(self) -> float:
-        """See `Piece`."""
+        """See `SleepingItem`."""
         return UniformGravityFieldElement.kDefaultStrength * float(self.item.body.default_mass())
 
     def speed(self, context: Context, size: float) -> float:
-        """See `Piece`.
+        """See `SleepingItem`.
 
         Args:
             context: of the plant.
@@ -153,19 +155,21 @@ class RigidPiece:
         return float("inf") if turning > UNMOVED else speed
 
     def is_awake(self, context: Context) -> bool:
-        """See `Piece`."""
+        """See `SleepingItem`."""
         return not self.item.body.is_locked(context)
 
     def wake(self, root: Context) -> None:
-        """See `Piece`."""
+        """See `SleepingItem`."""
         self.item.body.Unlock(self.plant.GetMyMutableContextFromRoot(root))
 
-    def rest(self, root: Context) -> None:
-        """See `Piece`."""
+    def sleep(self, root: Context) -> None:
+        """See `SleepingItem`."""
         self.item.body.Lock(self.plant.GetMyMutableContextFromRoot(root))
 
 
-def make_piece(plant: MultibodyPlant, scene_graph: SceneGraph, item: RigidItem | SoftItem) -> Piece:
+def make_sleeping_item(
+    plant: MultibodyPlant, scene_graph: SceneGraph, item: RigidItem | DeformableItem
+) -> SleepingItem:
     """As its kind is.
 
     Args:
@@ -173,7 +177,9 @@ def make_piece(plant: MultibodyPlant, scene_graph: SceneGraph, item: RigidItem |
         scene_graph: that the plant is registered with.
         item: one of the plant's.
     """
-    return SoftPiece(plant, scene_graph, item) if isinstance(item, SoftItem) else RigidPiece(plant, item)
+    return (
+        SleepingDeformable(plant, scene_graph, item) if isinstance(item, DeformableItem) else SleepingRigid(plant, item)
+    )
 
 
 STILL = 0.003  # [m/s], of the fastest node; settled piles creep at 0.0001

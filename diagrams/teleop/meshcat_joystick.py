@@ -43,7 +43,7 @@ CENTRE = ("Centre: both sliders to 0 [C]", "KeyC")
 """Puts the sliders back to 0."""
 
 PAD_BUTTONS = ((0, GRIPPER), (1, REVERSE), (9, START), (8, STOP))
-"""Button of a gamepad in the standard mapping (A, B, start, back) → place in the joystick vector."""
+"""Button of a gamepad in the standard mapping (A, B, start, back) → index in the joystick vector."""
 
 CONTROLS = """\
   stick    left stick of a gamepad, or arrow keys: x along the red arrow, y along the green one
@@ -67,9 +67,9 @@ def read_gamepad(axes: Sequence[float], buttons: Sequence[float], dead_zone: flo
     joystick = np.zeros(JOYSTICK_SIZE)
     if len(axes) >= 2:
         joystick[K_X], joystick[K_Y] = axes[0], -axes[1]
-    for button, place in PAD_BUTTONS:
+    for button, index in PAD_BUTTONS:
         if button < len(buttons):
-            joystick[place] = buttons[button] if np.isfinite(buttons[button]) else 0.0
+            joystick[index] = buttons[button] if np.isfinite(buttons[button]) else 0.0
     joystick = clean_joystick(joystick)
     norm = float(np.hypot(joystick[K_X], joystick[K_Y]))
     beyond = max(0.0, norm - dead_zone) / (1.0 - dead_zone)
@@ -155,8 +155,8 @@ class MeshcatJoystick(LeafSystem):
 
     def _sample(self, context: Context, discrete: DiscreteValues) -> None:
         joystick = self._read_keys(context, discrete) + self._read_pad(context, discrete)
-        for place, slider in enumerate(SLIDERS):
-            joystick[place] += round(self._meshcat.GetSliderValue(slider) / SLIDER_STEP) * SLIDER_STEP  # exact zeros
+        for index, slider in enumerate(SLIDERS):
+            joystick[index] += round(self._meshcat.GetSliderValue(slider) / SLIDER_STEP) * SLIDER_STEP  # exact zeros
         if self._meshcat.GetNumActiveConnections() == 0:
             joystick[:] = 0.0
         discrete.set_value(self._joystick, clean_joystick(joystick))

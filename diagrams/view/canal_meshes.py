@@ -153,7 +153,7 @@ def disk_rims(canal: CanalSurface, disks: np.ndarray, segments: int) -> np.ndarr
     Args:
         canal: in the robot's base frame.
         disks: continuous indices. Shape (P,).
-        segments: how many pieces the shape is made of.
+        segments: number of subdivisions of the shape.
     """
     return np.array([[canal.point(disk, 1.0, phi) for phi in circle_angles(segments)] for disk in disks])
 
@@ -164,7 +164,7 @@ def canal_skin(canal: CanalSurface, disks: np.ndarray, segments: int = 40) -> Tr
     Args:
         canal: in the robot's base frame.
         disks: continuous indices. Shape (P,).
-        segments: how many pieces the shape is made of.
+        segments: number of subdivisions of the shape.
     """
     return _skin(disk_rims(canal, disks, segments))
 
@@ -176,7 +176,7 @@ def canal_rings(canal: CanalSurface, disks: np.ndarray, thickness: float, segmen
         canal: in the robot's base frame.
         disks: continuous indices. Shape (P,).
         thickness: radius of a ring's tube, [m].
-        segments: how many pieces the shape is made of.
+        segments: number of subdivisions of the shape.
     """
     turn = -circle_angles(4)[None, :, None]
     rings = []

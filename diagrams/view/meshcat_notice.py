@@ -45,19 +45,19 @@ class MeshcatNotice:
             text: that is to be shown.
             time: when, [s].
         """
-        if before and self._meshcat.HasPath(self._place(before)):
-            self._meshcat.SetProperty(self._place(before), "visible", False, time)
+        if before and self._meshcat.HasPath(self._path_of(before)):
+            self._meshcat.SetProperty(self._path_of(before), "visible", False, time)
         if not text:
             return
-        place = self._place(text)
-        if not self._meshcat.HasPath(place):
+        path = self._path_of(text)
+        if not self._meshcat.HasPath(path):
             board = InMemoryMesh(mesh_file=MemoryFile(_board(text), ".gltf", "notice"))
-            self._meshcat.SetObject(place, Mesh(mesh_data=board))
-            self._meshcat.SetTransform(place, self._X_WN)
-            self._meshcat.SetProperty(place, "visible", False, 0.0)
-        self._meshcat.SetProperty(place, "visible", True, time)
+            self._meshcat.SetObject(path, Mesh(mesh_data=board))
+            self._meshcat.SetTransform(path, self._X_WN)
+            self._meshcat.SetProperty(path, "visible", False, 0.0)
+        self._meshcat.SetProperty(path, "visible", True, time)
 
-    def _place(self, text: str) -> str:
+    def _path_of(self, text: str) -> str:
         return f"{self._path}/{hashlib.sha256(text.encode()).hexdigest()[:12]}"
 
 

@@ -19,26 +19,26 @@ CORRECTING = FIELD_NAMES.index("correcting")
 STEP = 0.005
 """[m] Between the points that are kept."""
 JUMP = 0.1
-"""[m] From point to point: no arm moves so fast; a new piece begins there, not joined to the last."""
+"""[m] From point to point: no arm moves so fast; a new segment begins there, not joined to the last."""
 POINTS = 24
-"""In a piece of the trail; only the newest piece is ever sent again."""
-PIECES = 32
+"""In a segment of the trail; only the newest segment is ever sent again."""
+SEGMENTS = 32
 """That are seen (at most 3.7 m); the next one hides the oldest."""
 PATHS = 1000
-"""Pieces that the page keeps, seen or hidden; in a recording these many have their time."""
+"""Segments that the page keeps, seen or hidden; in a recording these many have their time."""
 RADIUS = 0.0035
 """[m] Of the trail."""
 
 
 class TrailView(LeafSystem):
-    """Draws the path travelled by the tool centre point, in pieces; those under a correction in another colour.
+    """Draws the path travelled by the tool centre point, in segments; those under a correction in another colour.
 
     ```
                 X_BT (7) →
         navigation_state → TrailView
     ```
 
-    The discrete state is the newest piece: how many pieces were begun, how many points it has, whether it is a
+    The discrete state is the newest segment: how many segments were begun, how many points it has, whether it is a
     correction, and the points. `navigation_state` may be left unconnected.
     """
 
@@ -57,7 +57,7 @@ class TrailView(LeafSystem):
         self._path = path
         self._X_BT = self.DeclareVectorInputPort("X_BT", 7)
         self._state = self.DeclareVectorInputPort("navigation_state", len(FIELD_NAMES))
-        self._piece = self.DeclareDiscreteState(3 + 3 * POINTS)
+        self._segment = self.DeclareDiscreteState(3 + 3 * POINTS)
         self.DeclareInitializationDiscreteUpdateEvent(self._clear)
         self.DeclarePeriodicDiscreteUpdateEvent(period, 0.0, self._append)
 
@@ -90,13 +90,13 @@ class TrailView(LeafSystem):
     def _clear(self, context: Context, discrete: DiscreteValues) -> EventStatus:
         self._meshcat.Delete(self._path)
         self._meshcat.SetTransform(self._path, self._X_WB)
-        discrete.set_value(self._piece, np.zeros(3 + 3 * POINTS))
+        discrete.set_value(self._segment, np.zeros(3 + 3 * POINTS))
         return EventStatus.Succeeded()
 
     def _append(self, context: Context, discrete: DiscreteValues) -> EventStatus:
-        piece = context.get_discrete_state(self._piece).value().copy()
-        begun, count, correction = int(piece[0]), int(piece[1]), piece[2]
-        points = piece[3:].reshape(POINTS, 3)
+        segment = context.get_discrete_state(self._segment).value().copy()
+        begun, count, correction = int(segment[0]), int(segment[1]), segment[2]
+        points = segment[3:].reshape(POINTS, 3)
         p = self._X_BT.Eval(context)[:3]
         correcting = float(self._state.HasValue(context) and self._state.Eval(context)[CORRECTING] > 0.5)
         way = np.linalg.norm(p - points[count - 1]) if count > 0 else np.inf
@@ -111,12 +111,12 @@ class TrailView(LeafSystem):
         count += 1
         if count > 1:
             self._draw(begun, points[:count], CORRECTED if correcting else TRAVELLED, context.get_time())
-        piece[:3] = begun, count, correcting
-        discrete.set_value(self._piece, piece)
+        segment[:3] = begun, count, correcting
+        discrete.set_value(self._segment, segment)
         return EventStatus.Succeeded()
 
     def _draw(self, begun: int, points: np.ndarray, rgba: Rgba, time: float) -> None:
-        path = self._piece_path(begun)
+        path = self._segment_path(begun)
         mesh = tube(points, RADIUS)
         self._meshcat.SetTriangleMesh(path, mesh.vertices, mesh.faces, rgba, side=Meshcat.SideOfFaceToRender.kFrontSide)
         self._meshcat.SetProperty(f"{path}/<object>", "castShadow", False)
@@ -124,8 +124,8 @@ class TrailView(LeafSystem):
             # A recording knows a path's last mesh from its first frame on: show it from when it was begun.
             self._meshcat.SetProperty(path, "visible", False, 0.0)
             self._meshcat.SetProperty(path, "visible", True, time)
-            if begun > PIECES:
-                self._meshcat.SetProperty(self._piece_path(begun - PIECES), "visible", False, time)
+            if begun > SEGMENTS:
+                self._meshcat.SetProperty(self._segment_path(begun - SEGMENTS), "visible", False, time)
 
-    def _piece_path(self, begun: int) -> str:
+    def _segment_path(self, begun: int) -> str:
         return f"{self._path}/{begun % PATHS:03d}"

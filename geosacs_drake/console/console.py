@@ -23,7 +23,7 @@ from geosacs_drake.console.link import Answers
 from geosacs_drake.console.mapping_choice import MappingChoice, chosen_view
 from geosacs_drake.console.server import ConsoleServer
 from geosacs_drake.console.status import StatusReporter
-from geosacs_drake.run_again import earlier_place
+from geosacs_drake.run_again import earlier_address
 
 WAIT_FOR_PAGE_S = 15.0
 """[s] With no page after so long the simulated operator begins."""
@@ -49,7 +49,7 @@ class Console:
             InputError: the port is taken.
         """
         address = meshcat.web_url().removeprefix("http://").partition(":")
-        earlier = earlier_place()
+        earlier = earlier_address()
         self._again = earlier is not None
         self._word = threading.Event()
         self.control = Control(person_asked=person)

@@ -20,7 +20,7 @@ MOST_PRESSES = 3
 """Presses of one button that may wait for their sample; more come from something that is broken."""
 
 BUTTONS = {"gripper": GRIPPER, "reverse": REVERSE, "start": START, "stop": STOP}
-"""Places in the joystick vector, by name."""
+"""Indices in the joystick vector, by name."""
 
 
 @dataclass(frozen=True)
@@ -176,11 +176,11 @@ class Control:
             if not self._stopped:
                 joystick[:GRIPPER] = self._next_stick()
             self._tap = (0.0, 0.0)
-            for button, place in BUTTONS.items():
+            for button, index in BUTTONS.items():
                 level = self._waiting[button] > 0 and not self._levels[button]
                 self._waiting[button] -= level
                 self._levels[button] = level
-                joystick[place] = float(level)
+                joystick[index] = float(level)
             self._sampled = clean_joystick(joystick)
             return LiveSample(self._sampled, self._person)
 

@@ -41,7 +41,7 @@ class StatusReporter:
         Args:
             system: the run.
             canal: that it travels.
-            item_names: of the things, in the scenario's order.
+            item_names: of the items, in the scenario's order.
             control: who steers.
             show: gets each status.
             standing: what an announcer has to say at the moment.

@@ -5,7 +5,7 @@ from __future__ import annotations
 from canal.navigation import Leg, NavigationState
 
 TRAVEL = {
-    Leg.HOME_TO_PICK: ("Going to pick", "The stick shifts its path to the side; it comes to the things by itself."),
+    Leg.HOME_TO_PICK: ("Going to pick", "The stick shifts its path to the side; it comes to the items by itself."),
     Leg.PICK_TO_HOME: ("Coming back from pick", "It lifts, and returns to the middle of its way."),
     Leg.HOME_TO_PLACE: ("Going to place", "The stick shifts its path to the side; it stops at the end."),
     Leg.PLACE_TO_HOME: ("Coming back from place", "It returns to the middle of its way."),

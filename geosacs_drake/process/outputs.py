@@ -33,7 +33,7 @@ def check_outputs(outputs: Iterable[Output], inputs: Iterable[Path]) -> None:
         inputs: what it reads; names that lead nowhere are for whoever reads them.
 
     Raises:
-        InputError: a wrong ending, a place that cannot be written, one file given twice or read by the same command.
+        InputError: a wrong ending, a path that cannot be written, one file given twice or read by the same command.
     """
     taken: dict[object, str] = {}
     for path in inputs:

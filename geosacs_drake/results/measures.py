@@ -21,10 +21,10 @@ MEASURES = (
     Measure("scenario", "", "The scenario as it was named: a file, or one that ships."),
     Measure("operator", "", "Who held the joystick: simulated, a person, or a recording."),
     Measure("items_kind", "", "soft, rigid, or mixed."),
-    Measure("success", "", "Whether at the end every thing was placed; not where something inside ended the run."),
+    Measure("success", "", "Whether at the end every item was placed; not where something inside ended the run."),
     Measure("reason", "", "Why the run ended. Where it ended otherwise although all was placed, it says both."),
-    Measure("seed", "", "Of where things lie, and of the simulated operator's errors."),
-    Measure("items.name", "", "Of a thing, as in the scenario."),
+    Measure("seed", "", "Of where items lie, and of the simulated operator's errors."),
+    Measure("items.name", "", "Of an item, as in the scenario."),
     Measure(
         "items.placed",
         "",
@@ -33,7 +33,7 @@ MEASURES = (
     Measure(
         "items.time_s",
         "s",
-        "From start until it had come to rest there and no finger touched it, to 0.05 s; it has neither left its place "
+        "From start until it had come to rest there and no finger touched it, to 0.05 s; it has neither moved away "
         "nor been faster since. A finger that touches it again without moving it changes nothing. Null where it is not "
         "placed.",
     ),

@@ -29,7 +29,7 @@ class RunResult:
     reason: str
     item_names: Sequence[str]
     placed_times: np.ndarray
-    """When each thing came to rest in its place; negative where it is not. Shape (n,)."""
+    """When each item came to rest where it belongs; negative where it is not. Shape (n,)."""
     contact_pairs: Sequence[str]
     peak_forces: np.ndarray
     """[N], per pair."""

@@ -170,11 +170,11 @@ def _progress(rng: np.random.Generator, h: Hardness) -> np.ndarray:
     for stop in np.sort(stops[: h.hesitations]) if h.hesitations else []:
         marks += [stop, stop - rng.uniform(0.02, 0.035)]
     marks += [1.0]
-    pieces = [np.zeros(int(RATE_HZ * rng.uniform(2, 5)))] if h.pauses else []
+    parts = [np.zeros(int(RATE_HZ * rng.uniform(2, 5)))] if h.pauses else []
     for a, b in pairwise(marks):
         s = np.linspace(0, 1, max(8, int(moving * abs(b - a))))
-        pieces.append(a + (b - a) * s**3 * (10 - 15 * s + 6 * s**2))
-    u = np.concatenate(pieces)
+        parts.append(a + (b - a) * s**3 * (10 - 15 * s + 6 * s**2))
+    u = np.concatenate(parts)
     if h.pauses:
         at = int(rng.uniform(0.4, 0.6) * len(u))
         u = np.concatenate([u[:at], np.full(int(RATE_HZ * 2), u[at]), u[at:]])

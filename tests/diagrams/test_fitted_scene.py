@@ -1,4 +1,4 @@
-"""A scene fitted to a canal: the gripper comes down on things at the right height, wherever they are drawn."""
+"""A scene fitted to a canal: the gripper comes down on items at the right height, wherever they are drawn."""
 
 from dataclasses import replace
 
@@ -13,7 +13,7 @@ from canal.surface import CanalSurface
 from diagrams.fitted_scene import GRIP_HEIGHT, FittedScene, fit_scene
 from diagrams.scenario import load_scenario
 from diagrams.scene.layout import draw_layout
-from diagrams.scene.leads_to import check_leads_to_things
+from diagrams.scene.leads_to import check_leads_to_items
 from diagrams.scene.open_gripper import gripper_depth, lean, opens_towards
 from diagrams.station.lio_ik import make_lio_solver
 from diagrams.station.lio_station import LioStation
@@ -34,7 +34,7 @@ def fitted(canal: CanalSurface) -> FittedScene:
 
 
 def test_tables_stand_where_the_gripper_closes(fitted: FittedScene) -> None:
-    _, pick, place = fitted.scenario.things
+    _, pick, place = fitted.scenario.fixtures
     for table, disk in ((pick, 0), (place, -1)):
         assert fitted.canal.directrix[disk, 2] - table.position[2] == pytest.approx(GRIP_HEIGHT, abs=0.006)
         assert gripper_depth(fitted.canal.orientations[disk]) < GRIP_HEIGHT - 0.008, "the fingertips are clear of it"
@@ -75,9 +75,9 @@ def test_the_handle_points_where_no_finger_comes(fitted: FittedScene) -> None:
         assert abs(np.sin(handle - fingers)) > np.cos(np.radians(16))
 
 
-def test_the_canal_leads_to_the_things_and_nothing_overlaps(fitted: FittedScene) -> None:
+def test_the_canal_leads_to_the_items_and_nothing_overlaps(fitted: FittedScene) -> None:
     for seed in range(5):
-        check_leads_to_things(fitted.scenario, fitted.canal, seed)
+        check_leads_to_items(fitted.scenario, fitted.canal, seed)
     LioStation(fitted.scenario, seed=0)
 
 
@@ -118,4 +118,4 @@ def test_a_small_disk_gets_what_there_is_room_for() -> None:
     assert narrow.radii[0] < 0.04
     fitted = fit_scene(narrow, TEMPLATE, make_lio_solver(TEMPLATE, TEMPLATE.ik))
     assert 0 < len(fitted.scenario.items) < 3
-    assert any("of 3 things" in line for line in fitted.lines)
+    assert any("of 3 items" in line for line in fitted.lines)

@@ -72,7 +72,7 @@ def test_ends_when_all_is_placed_and_says_when(bench):
     bench.put_on_mark()
     status = bench.run(1.0)
     assert ended(status)
-    assert "in its place" in status.message()
+    assert "placed" in status.message()
     assert 0.2 <= bench.output("placed_times")[0] <= 0.3
 
 
@@ -84,7 +84,7 @@ def test_not_placed_while(bench, canal, spoil):
     elif spoil == "moving":
         bench.set(item_speeds=[0.3])
     else:
-        bench.navigate(disk=canal.n_disks - 1.0)  # placed, but the robot is still among the things
+        bench.navigate(disk=canal.n_disks - 1.0)  # placed, but the robot is still among the items
     assert not ended(bench.run(0.5))
     assert (bench.output("placed_times")[0] >= 0) == (spoil == "at the goal")
 

@@ -7,7 +7,7 @@ import pytest
 import yaml
 
 from canal.errors import InputError
-from diagrams.scenario import load_scenario, shipped_scenarios, with_items
+from diagrams.scenario import RENAMED, load_scenario, shipped_scenarios, with_items
 from diagrams.scene.layout import draw_layout, reach_at, yaw_pose
 from diagrams.scene.world import Contact, Region, Room
 from models import SCENARIOS
@@ -84,7 +84,7 @@ def test_layout_is_the_seeds():
 
 def test_what_lies_in_a_basket_goes_where_the_basket_goes():
     scenario = load_scenario("laundry")
-    basket = next(thing for thing in scenario.things if thing.name == "basket")
+    basket = next(fixture for fixture in scenario.fixtures if fixture.name == "basket")
     before = draw_layout(scenario, 3)[0]
     old = yaw_pose(basket.position, np.deg2rad(basket.yaw_deg))
     basket.position, basket.yaw_deg = [0.1, 0.2, 0.5], 70.0
@@ -95,8 +95,8 @@ def test_what_lies_in_a_basket_goes_where_the_basket_goes():
 
 
 def test_contact_suits_what_there_is_unless_told():
-    soft, rigid = (Contact().for_items(soft) for soft in (True, False))
-    assert (soft.approximation, rigid.approximation) == ("lagged", "sap")
+    deformable, rigid = (Contact().for_items(kind) for kind in (True, False))
+    assert (deformable.approximation, rigid.approximation) == ("lagged", "sap")
     told = Contact(time_step=0.002, approximation="similar")
     assert told.for_items(True) == told.for_items(False) == told
 
@@ -104,7 +104,7 @@ def test_contact_suits_what_there_is_unless_told():
 def test_a_region_too_small_is_refused():
     scenario = load_scenario("laundry")
     scenario.item_spacing = 0.5
-    with pytest.raises(InputError, match=r"items\.tshirt\.soft_start leaves no place that is 0\.5 m"):
+    with pytest.raises(InputError, match=r"items\.tshirt\.deformable_start leaves no position that is 0\.5 m"):
         draw_layout(scenario, 0)
 
 
@@ -130,8 +130,8 @@ def test_unknown_name_lists_those_that_ship():
         ({"drum": {"inward": [0.5, 0.866, 0.0]}}, "drum.inward is [0.5, 0.866, 0.0]; give a unit vector along an axis"),
         ({"retarget": {"pick": [0.4, 0.1]}}, "retarget.pick is [0.4, 0.1]; give a position (3 numbers)"),
         ({"retarget": {"pick_yaw_deg": float("inf")}}, "retarget.pick_yaw_deg is inf; give a finite number"),
-        ({"things": 5}, "things is 5; give a list"),
-        ({"things": [{"name": "a", "model": "nothing"}]}, "'nothing' does not exist; give a file or one of basket"),
+        ({"fixtures": 5}, "fixtures is 5; give a list"),
+        ({"fixtures": [{"name": "a", "model": "nothing"}]}, "'nothing' does not exist; give a file or one of basket"),
         ({"items": []}, "items is empty"),
         ({"items": [{"nam": "x"}]}, "items[0].nam is not known"),
         (
@@ -175,6 +175,31 @@ def test_what_cannot_be_used(tmp_path, change, message):
         load_scenario(path)
     assert str(caught.value).startswith("scenario mine.yaml: ")
     assert "\n" not in str(caught.value)
+
+
+def _with_key(data, new, old):
+    """The document with a key called otherwise, and its path; at its first holder."""
+    keys = data.items() if isinstance(data, dict) else enumerate(data) if isinstance(data, list) else ()
+    for key, value in keys:
+        if key == new:
+            return {(old if k == new else k): v for k, v in data.items()}, old
+        if (found := _with_key(value, new, old)) is not None:
+            changed, path = found
+            rest = data | {key: changed} if isinstance(data, dict) else [*data[:key], changed, *data[key + 1 :]]
+            return rest, f"{key}[{path}" if isinstance(value, list) else f"{key}.{path}"
+    return None
+
+
+@pytest.mark.parametrize(("old", "new"), RENAMED.items())
+def test_a_key_of_an_earlier_version_is_met_with_the_name_it_has_now(tmp_path, old, new):
+    document = yaml.safe_load((SCENARIOS / "laundry.yaml").read_text()) | {"ik": {"collision_avoidance": {}}}
+    renamed, key = _with_key(document, new, old)
+    path = tmp_path / "mine.yaml"
+    path.write_text(yaml.safe_dump(renamed))
+    with pytest.raises(InputError) as caught:
+        load_scenario(path)
+    key = key.replace("[0.", "[0].")
+    assert str(caught.value) == f"scenario mine.yaml: {key} is now called {new}; write that"
 
 
 @pytest.mark.parametrize("text", ["task: [", "- 1", "", "\x00"])

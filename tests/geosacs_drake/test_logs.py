@@ -109,8 +109,8 @@ def test_models_of_a_log_are_looked_at(tmp_path, monkeypatch, capfd):
     with np.load("a.npz") as log:
         arrays = dict(log)
     metadata = json.loads(str(arrays["metadata"]))
-    metadata["scenario"]["things"][0]["model"] = "nowhere"
+    metadata["scenario"]["fixtures"][0]["model"] = "nowhere"
     write_npz(tmp_path / "b.npz", **(arrays | {"metadata": np.array(json.dumps(metadata))}))
     code, said = run(capfd, "--operator", "b.npz")
     assert code == 2
-    assert "things[0].model: 'nowhere' does not exist" in said
+    assert "fixtures[0].model: 'nowhere' does not exist" in said

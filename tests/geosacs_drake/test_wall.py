@@ -33,9 +33,9 @@ def walled(tmp_path_factory):
     canal = prepare_canal(load_scenario("relocation"), RunOptions(headless=True))
     x, y, z = canal.directrix[canal.home_disk // 2] - [0.0, 0.0, 0.05]
     (folder / "wall.sdf").write_text(WALL)
-    thing = f"things:\n  - {{name: wall, model: wall.sdf, position: [{x:.3f}, {y:.3f}, {z:.3f}]}}\n"
+    fixture = f"fixtures:\n  - {{name: wall, model: wall.sdf, position: [{x:.3f}, {y:.3f}, {z:.3f}]}}\n"
     text = (SCENARIOS / "relocation.yaml").read_text()
-    (folder / "walled.yaml").write_text(text.replace("things:\n", thing, 1))
+    (folder / "walled.yaml").write_text(text.replace("fixtures:\n", fixture, 1))
     return load_scenario(folder / "walled.yaml"), canal
 
 

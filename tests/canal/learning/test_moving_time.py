@@ -31,20 +31,20 @@ def _recorded(u: np.ndarray, noise: float = 1e-4, seed: int = 0) -> Demonstratio
     return Demonstration(position + noise * rng.normal(size=position.shape), np.tile([1.0, 0, 0, 0], (len(u), 1)))
 
 
-def _with_pauses(stroke, pieces: int, seconds: float, pause: float) -> np.ndarray:
+def _with_pauses(stroke, parts: int, seconds: float, pause: float) -> np.ndarray:
     still = np.zeros(round(pause * RATE))
     u = [still]
-    for k in range(pieces):
-        u += [(k + stroke(seconds / pieces)) / pieces, still + (k + 1) / pieces]
+    for k in range(parts):
+        u += [(k + stroke(seconds / parts)) / parts, still + (k + 1) / parts]
     return np.concatenate(u)
 
 
 @pytest.mark.parametrize("stroke", [_minimum_jerk, _evenly_accelerated])
-@pytest.mark.parametrize("pieces", [1, 2, 3])
+@pytest.mark.parametrize("parts", [1, 2, 3])
 @pytest.mark.parametrize("pause", [1.0, 4.0, 20.0])
 @pytest.mark.parametrize("noise", [0.0, 1e-4])
-def test_moving_time_is_what_was_generated(stroke, pieces, pause, noise):
-    d = _recorded(_with_pauses(stroke, pieces, 12.0, pause), noise)
+def test_moving_time_is_what_was_generated(stroke, parts, pause, noise):
+    d = _recorded(_with_pauses(stroke, parts, 12.0, pause), noise)
     assert trim(d, 201).moving_time == pytest.approx(12.0, rel=0.05)
 
 

@@ -55,7 +55,7 @@ def test_catmull_rom_passes_its_knots_smoothly_and_turns_at_a_constant_rate_wher
     at = np.linspace(0, 1, 101)
     found = rotation_curve(knots, turns, at)
     expected = Rotation.from_rotvec(np.outer(at, [0.4, 1.0, -0.3])).as_quat(scalar_first=True)
-    # Natural ends bend the first and the last piece.
+    # Natural ends bend the first and the last segment.
     assert np.abs(np.abs(np.sum(found * expected, axis=1)) - 1)[20:81].max() < 1e-12
     wild = continuous_signs(some_quaternions(5, 1, 6, 1.0)[0])
     curve = rotation_curve(knots, wild, at)

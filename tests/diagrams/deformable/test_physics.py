@@ -1,4 +1,4 @@
-"""Cloth in Drake: it lies still, is held, does not leak, rests and wakes; and it is drawn where it is."""
+"""Cloth in Drake: it lies still, is held, does not leak, sleeps and wakes; and it is drawn where it is."""
 
 import numpy as np
 import pytest
@@ -7,12 +7,12 @@ from pydrake.math import RigidTransform, RollPitchYaw
 from pydrake.multibody.plant import AddMultibodyPlant, CoulombFriction, MultibodyPlantConfig
 from pydrake.systems.framework import DiagramBuilder
 
+from benchmarks.deformable_rig import CLOSED, OPEN, Rig, Setting
 from benchmarks.half_step import apart
-from benchmarks.soft_rig import CLOSED, OPEN, Rig, Setting
 from diagrams.deformable.contact import SURROUNDINGS_GRADIENT, half_thickness
 from diagrams.deformable.laundry import make_shape
 from diagrams.geometry.box_depth import FixedBoxes
-from diagrams.station.sleep import Rest
+from diagrams.station.sleep import SleepManager
 
 FLOOR = 0.3
 
@@ -24,14 +24,14 @@ def sock_rig():
 
 def test_energy_does_not_grow_at_rest(sock_rig):
     sock_rig.wait(0.8)
-    place = sock_rig.nodes(0).mean(axis=0)
+    start = sock_rig.nodes(0).mean(axis=0)
     energies = []
     for _ in range(8):
         sock_rig.wait(0.1)
         energies.append(sock_rig.kinetic_energy() + sock_rig.potential_energy())
     assert np.diff(energies).max() < 1e-6  # [J], of 10 mJ of weight above the floor
     assert sock_rig.speed(0) < 1e-3
-    assert np.linalg.norm(sock_rig.nodes(0).mean(axis=0) - place) < 1e-4
+    assert np.linalg.norm(sock_rig.nodes(0).mean(axis=0) - start) < 1e-4
 
 
 def test_a_falling_towel_does_not_leak():
@@ -61,7 +61,7 @@ def test_what_is_held_slips_less_than_three_millimetres(sock_rig):
     assert slip < 0.003
 
 
-def test_soft_bodies_keep_each_other_apart():
+def test_deformable_bodies_keep_each_other_apart():
     """A sock dropped on a sock comes to lie on it."""
     low, high = make_shape("sock"), make_shape("sock")
     rig = Rig([("low", low, [0.45, 0.0, 0.325], 0.0), ("high", high, [0.45, 0.0, 0.39], 1.2)], Setting())
@@ -69,24 +69,24 @@ def test_soft_bodies_keep_each_other_apart():
     assert rig.nodes(1)[:, 2].mean() - rig.nodes(0)[:, 2].mean() > 0.015
 
 
-def test_what_falls_on_a_resting_piece_lies_where_it_would_on_one_that_is_awake():
-    """A sock on a sock: the heights differ by less than 5 mm, and the resting one stays where it is, bit for bit."""
-    pieces = [
+def test_what_falls_on_a_sleeping_item_lies_where_it_would_on_one_that_is_awake():
+    """A sock on a sock: the heights differ by less than 5 mm, and the sleeping one stays where it is, bit for bit."""
+    clothes = [
         ("low", make_shape("sock"), [0.45, 0.0, 0.325], 0.0),
         ("high", make_shape("sock"), [0.45, 0.2, 0.325], 0.0),
     ]
     heights = []
     for awake in (True, False):
-        rig = Rig(pieces, Setting())
+        rig = Rig(clothes, Setting())
         scene_graph = rig.diagram.GetSubsystemByName("scene_graph")
         robot = rig.palm.model_instance()
-        rest = Rest(plant=rig.plant, scene_graph=scene_graph, robot=robot, items=rig.items)
+        sleep = SleepManager(plant=rig.plant, scene_graph=scene_graph, robot=robot, items=rig.items)
         rig.wait(0.6)
-        rest.set_awake(rig.root, np.array([False, False]))
+        sleep.set_awake(rig.root, np.array([False, False]))
         before = rig.nodes(0).copy()
         lifted = rig.nodes(1) + [0.0, -0.2, 0.1]
         rig.plant.deformable_model().SetPositions(rig.context, rig.items[1].body_id, lifted.T)
-        rest.set_awake(rig.root, np.array([awake, True]))
+        sleep.set_awake(rig.root, np.array([awake, True]))
         rig.wait(0.8)
         heights.append(rig.nodes(1)[:, 2].mean())
         if not awake:
@@ -95,17 +95,17 @@ def test_what_falls_on_a_resting_piece_lies_where_it_would_on_one_that_is_awake(
     assert abs(heights[1] - heights[0]) < 5e-3
 
 
-def test_still_pieces_rest_and_wake_before_they_are_touched():
+def test_still_items_sleep_and_wake_before_they_are_touched():
     shape = make_shape("sock")
-    pieces = [("one", shape, [0.45, 0.0, 0.325], 0.0), ("other", shape, [0.45, 0.2, 0.325], 0.0)]
-    rig = Rig(pieces, Setting())
-    rest = Rest(
+    clothes = [("one", shape, [0.45, 0.0, 0.325], 0.0), ("other", shape, [0.45, 0.2, 0.325], 0.0)]
+    rig = Rig(clothes, Setting())
+    sleep = SleepManager(
         plant=rig.plant,
         scene_graph=rig.diagram.GetSubsystemByName("scene_graph"),
         robot=rig.palm.model_instance(),
         items=rig.items,
     )
-    rig.simulator.set_monitor(rest)
+    rig.simulator.set_monitor(sleep)
     model = rig.plant.deformable_model()
 
     def awake() -> list[bool]:
@@ -127,24 +127,24 @@ def test_still_pieces_rest_and_wake_before_they_are_touched():
     assert rig.nodes(0)[:, 2].min() > FLOOR + 0.03
 
 
-def test_a_hand_in_the_corner_of_its_bounds_does_not_wake_a_piece_that_lies_aslant():
+def test_a_hand_in_the_corner_of_its_bounds_does_not_wake_an_item_that_lies_aslant():
     rig = Rig([("towel", make_shape("towel"), [0.45, 0.0, 0.345], np.pi / 4)], Setting())
     scene_graph = rig.diagram.GetSubsystemByName("scene_graph")
-    rest = Rest(plant=rig.plant, scene_graph=scene_graph, robot=rig.palm.model_instance(), items=rig.items)
+    sleep = SleepManager(plant=rig.plant, scene_graph=scene_graph, robot=rig.palm.model_instance(), items=rig.items)
     rig.wait(1.0)
     nodes = rig.nodes(0)
     low, high = nodes.min(axis=0), nodes.max(axis=0)
-    assert not rest.awake(rig.context).any()
+    assert not sleep.awake(rig.context).any()
     for x, y, wakes in ((low[0] + 0.04, low[1] + 0.04, True), (high[0] - 0.02, low[1] + 0.02, False)):
         hand = [x, y, low[2] + 0.03, 0.0, 0.0]  # over an end of it, and where it is not
         rig.plant.SetPositions(rig.context, rig.palm.model_instance(), [*hand, 0.0])
-        assert rest.awake(rig.context).tolist() == [wakes]
+        assert sleep.awake(rig.context).tolist() == [wakes]
 
 
 # A rigid bundle may come to lie on the facet beside: in four of six turns it ends 18 to 20 mm from there.
-@pytest.mark.parametrize(("soft", "bound"), [(True, 0.010), (False, 0.025)])
-def test_half_the_time_step_ends_in_the_same_place(soft, bound):
-    assert apart("towel", soft=soft, turns=(0.4,)) < bound
+@pytest.mark.parametrize(("deformable", "bound"), [(True, 0.010), (False, 0.025)])
+def test_half_the_time_step_ends_in_the_same_place(deformable, bound):
+    assert apart("towel", deformable=deformable, turns=(0.4,)) < bound
 
 
 def test_every_rigid_shape_has_the_gradient_that_suits_cloth(sock_rig):

@@ -1,11 +1,11 @@
-"""What cameras see of a soft piece: fine, coloured, within the solid that carries it, and carried along."""
+"""What cameras see of a deformable item: fine, coloured, within the solid that carries it, and carried along."""
 
 import numpy as np
 import pytest
 from pydrake.geometry import ReadObjToTriangleSurfaceMesh
 from pydrake.systems.framework import DiagramBuilder
 
-from diagrams.deformable.laundry import SOFT_KINDS, make_shape
+from diagrams.deformable.laundry import DEFORMABLE_KINDS, make_shape
 from diagrams.deformable.render_mesh import write_render_mesh
 from diagrams.deformable.tet_mesh import embed
 from diagrams.scenario import load_scenario, with_items
@@ -13,19 +13,19 @@ from diagrams.station.lio_station import LioStation
 from diagrams.view.cameras import add_camera, look_at
 
 
-@pytest.mark.parametrize("kind", SOFT_KINDS)
+@pytest.mark.parametrize("kind", DEFORMABLE_KINDS)
 def test_the_surface_lies_within_the_solid(kind, tmp_path):
     shape = make_shape(kind)
-    write_render_mesh(shape, tmp_path / "piece.obj")
-    mesh = ReadObjToTriangleSurfaceMesh(str(tmp_path / "piece.obj"))
+    write_render_mesh(shape, tmp_path / "garment.obj")
+    mesh = ReadObjToTriangleSurfaceMesh(str(tmp_path / "garment.obj"))
     assert mesh.num_triangles() == len(shape.surface.triangles) > 3 * len(shape.mesh.tetrahedra)
     points = np.array([mesh.vertex(i) for i in range(mesh.num_vertices())])
     assert embed(shape.mesh, points)[1].min() > 0
-    colors = {line for line in (tmp_path / "piece.mtl").read_text().splitlines() if line[:2] == "Kd"}
+    colors = {line for line in (tmp_path / "garment.mtl").read_text().splitlines() if line[:2] == "Kd"}
     assert len(colors) > 2
 
 
-def test_a_filmed_piece_shows_more_than_one_colour():
+def test_a_filmed_item_shows_more_than_one_colour():
     pictures = []
     for filmed in (False, True):
         builder = DiagramBuilder()

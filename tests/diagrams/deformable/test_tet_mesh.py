@@ -7,10 +7,10 @@ from hypothesis import strategies as st
 
 from canal.errors import InputError
 from diagrams.deformable.items import node_masses
-from diagrams.deformable.laundry import SOFT_KINDS, make_shape
+from diagrams.deformable.laundry import DEFORMABLE_KINDS, make_shape
 from diagrams.deformable.tet_mesh import TetBuilder, Tube, embed
 
-KINDS = sorted(SOFT_KINDS)
+KINDS = sorted(DEFORMABLE_KINDS)
 
 
 def edges_seen_once_each_way(triangles: np.ndarray) -> bool:
@@ -45,7 +45,7 @@ def test_boundary_is_a_closed_sphere_around_the_volume(kind, segments):
 
 @pytest.mark.parametrize("kind", KINDS)
 def test_there_are_nodes_inside(kind):
-    """Without depth below the surface Drake cannot tell how deep two soft bodies overlap."""
+    """Without depth below the surface Drake cannot tell how deep two deformable bodies overlap."""
     mesh = make_shape(kind).mesh
     assert len(np.unique(mesh.boundary())) <= len(mesh.vertices) - 4
 

@@ -7,9 +7,9 @@ from pydrake.multibody.plant import AddMultibodyPlant, MultibodyPlantConfig
 from pydrake.systems.analysis import Simulator
 from pydrake.systems.framework import DiagramBuilder
 
-from diagrams.deformable.items import add_soft_item
+from diagrams.deformable.items import add_deformable_item
 from diagrams.deformable.laundry import make_shape
-from diagrams.deformable.view import SoftView
+from diagrams.deformable.view import DeformableView
 
 
 class Canvas:
@@ -37,9 +37,9 @@ class Canvas:
 def falling_sock(canvas, recording, until, spin=0.0):
     builder = DiagramBuilder()
     plant, scene_graph = AddMultibodyPlant(MultibodyPlantConfig(time_step=0.005), builder)
-    sock = add_soft_item(plant=plant, name="sock", shape=make_shape("sock"), X_WP=RigidTransform([0, 0, 1.0]))
+    sock = add_deformable_item(plant=plant, name="sock", shape=make_shape("sock"), X_WP=RigidTransform([0, 0, 1.0]))
     plant.Finalize()
-    view = SoftView.AddToBuilder(
+    view = DeformableView.AddToBuilder(
         builder=builder, scene_graph=scene_graph, items=[sock], meshcat=canvas, recording=recording
     )
     diagram = builder.Build()
@@ -59,8 +59,8 @@ def falling_sock(canvas, recording, until, spin=0.0):
 def test_the_surface_is_drawn_where_the_solid_is():
     canvas = Canvas()
     surface = falling_sock(canvas, recording=False, until=0.2)
-    assert set(canvas.meshes) == {"soft/sock"}
-    np.testing.assert_allclose(canvas.meshes["soft/sock"], surface, atol=5e-3 + 1e-3)
+    assert set(canvas.meshes) == {"deformable/sock"}
+    np.testing.assert_allclose(canvas.meshes["deformable/sock"], surface, atol=5e-3 + 1e-3)
 
 
 def test_what_it_takes_for_drawn_is_what_it_drew():
@@ -72,9 +72,9 @@ def test_what_it_takes_for_drawn_is_what_it_drew():
 def test_a_recording_moves_what_does_not_bend_and_redraws_what_does():
     falls, spins = Canvas(), Canvas()
     surface = falling_sock(falls, recording=True, until=0.5)
-    assert set(falls.meshes) == {"soft/sock/0"}
+    assert set(falls.meshes) == {"deformable/sock/0"}
     path, X, time = falls.moves[-1]
-    assert (path, time) == ("soft/sock/0", 0.5)
+    assert (path, time) == ("deformable/sock/0", 0.5)
     np.testing.assert_allclose(X.multiply(falls.meshes[path].T).T, surface, atol=3e-3)
     falling_sock(spins, recording=True, until=0.5, spin=30.0)
     assert len(spins.meshes) > 2
@@ -89,12 +89,12 @@ def test_a_recording_shows_one_surface_at_a_time():
         for path, shown, when in canvas.shown:
             if when == time:
                 (visible.add if shown else visible.discard)(path)
-        assert len(visible - {"soft/sock/0"}) == 1
+        assert len(visible - {"deformable/sock/0"}) == 1
     hidden_at_start = {path for path, shown, when in canvas.shown if when == 0.0 and not shown}
-    assert hidden_at_start == set(canvas.meshes) - {"soft/sock/0"}
+    assert hidden_at_start == set(canvas.meshes) - {"deformable/sock/0"}
 
 
 def test_meshcat_takes_it():
     meshcat = Meshcat(MeshcatParams(host="localhost"))
     falling_sock(meshcat, recording=False, until=0.05)
-    assert meshcat.HasPath("soft/sock")
+    assert meshcat.HasPath("deformable/sock")

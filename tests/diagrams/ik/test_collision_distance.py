@@ -5,9 +5,9 @@ import pytest
 from ik_arm import TCP, lio_plant, pose_of
 from pydrake.geometry import Sphere
 
-from benchmarks.ik.clear import MARGIN, Q_FRONT, arm_and, deep_path, least_distance, solver_beside_wall
+from benchmarks.ik.collision_avoidance import MARGIN, Q_FRONT, arm_and, deep_path, least_distance, solver_beside_wall
 from canal.errors import InputError
-from diagrams.ik.options import IkOptions, IkStatus, KeepClearOptions
+from diagrams.ik.options import CollisionAvoidanceOptions, IkOptions, IkStatus
 from diagrams.ik.solver import IkSolver
 from diagrams.scenario import load_scenario
 from diagrams.station.lio_ik import make_lio_solver
@@ -81,7 +81,7 @@ def test_slopes_of_distances_match_finite_differences(solver: IkSolver) -> None:
     q = Q_FRONT + np.array([0.1, 0.1, 0.0, 0.1, 0.1, 0.2])
     arm.set(q)
     near = clearance.near(1.0)
-    slopes = clearance.slopes(near)
+    jacobian = clearance.jacobian(near)
     assert len(near.distances) > 0
     for i in range(6):
         ends = []
@@ -89,14 +89,16 @@ def test_slopes_of_distances_match_finite_differences(solver: IkSolver) -> None:
             arm.set(q + sign * 1e-5 * np.eye(6)[i])
             ends.append(clearance.near(1.0).distances)
         # Where faces are parallel the closest points jump, and differences see it.
-        off = np.abs(slopes[:, i] - (ends[0] - ends[1]) / 2e-5)
+        off = np.abs(jacobian[:, i] - (ends[0] - ends[1]) / 2e-5)
         assert np.median(off) < 1e-6
         assert off.max() < 1e-3
 
 
 def test_pairs_that_never_part_are_left_out(solver: IkSolver) -> None:
     plant, diagram = arm_and(Sphere(0.1), [0.0, 1.5, 0.5])
-    everything = IkSolver(plant, TCP, IkOptions(keep_clear=KeepClearOptions(margin=MARGIN)), diagram=diagram)
+    everything = IkSolver(
+        plant, TCP, IkOptions(collision_avoidance=CollisionAvoidanceOptions(margin=MARGIN)), diagram=diagram
+    )
     assert everything.clearance is not None
     assert solver.clearance is not None
     assert everything.clearance.pairs > solver.clearance.pairs
@@ -106,17 +108,17 @@ def test_pairs_that_never_part_are_left_out(solver: IkSolver) -> None:
 
 def test_bad_options_are_refused() -> None:
     plant, diagram = arm_and(Sphere(0.1), [0.0, 1.5, 0.5])
-    for options, message in ((KeepClearOptions(solid_bodies=["no_such_wall"]), "there are"),):
+    for options, message in ((CollisionAvoidanceOptions(solid_bodies=["no_such_wall"]), "there are"),):
         with pytest.raises(InputError, match=message):
-            IkSolver(plant, TCP, IkOptions(keep_clear=options), diagram=diagram)
+            IkSolver(plant, TCP, IkOptions(collision_avoidance=options), diagram=diagram)
     with pytest.raises(InputError, match="give `diagram`"):
-        IkSolver(lio_plant(), TCP, IkOptions(keep_clear=KeepClearOptions()))
+        IkSolver(lio_plant(), TCP, IkOptions(collision_avoidance=CollisionAvoidanceOptions()))
 
 
-def test_a_scenario_can_ask_the_arm_to_keep_clear_of_its_things() -> None:
+def test_a_scenario_can_ask_the_arm_to_avoid_its_fixtures() -> None:
     scenario = load_scenario("laundry")
     assert make_lio_solver(scenario, scenario.ik).clearance is None
-    scenario.ik.keep_clear = KeepClearOptions(margin=0.01, solid_bodies=["machine"])
+    scenario.ik.collision_avoidance = CollisionAvoidanceOptions(margin=0.01, solid_bodies=["machine"])
     solver = make_lio_solver(scenario, scenario.ik)
     assert solver.clearance is not None
     front = pose_of(solver, START_POSTURE)

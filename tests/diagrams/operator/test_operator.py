@@ -25,45 +25,45 @@ def arch(side: float) -> Demonstration:
 
 
 class StickyWorld(LeafSystem):
-    """The TCP is where it is wanted; a thing within reach of closing fingers is carried until they open."""
+    """The TCP is where it is wanted; an item within reach of closing fingers is carried until they open."""
 
-    def __init__(self, things: np.ndarray, slips: int = 0):
+    def __init__(self, items: np.ndarray, slips: int = 0):
         super().__init__()
-        self.n = len(things)
+        self.n = len(items)
         self.pose = self.DeclareVectorInputPort("X_BT_desired", 7)
         self.gripper = self.DeclareVectorInputPort("gripper_command", 1)
         # Positions, which is held (-1 none), grip so far, grips that slip.
-        self.DeclareDiscreteState(np.concatenate([things.ravel(), [-1, 0, slips]]))
+        self.DeclareDiscreteState(np.concatenate([items.ravel(), [-1, 0, slips]]))
         self.DeclareVectorOutputPort("item_poses", 7 * self.n, self.poses)
         self.DeclareVectorOutputPort("item_bounds", 6 * self.n, self.bounds)
         self.DeclarePeriodicDiscreteUpdateEvent(0.01, 0.0, self.update)
 
-    def things(self, context):
+    def positions(self, context):
         return context.get_discrete_state(0).value()[:-3].reshape(self.n, 3)
 
     def poses(self, context, output):
-        output.set_value(np.hstack([self.things(context), np.tile([1.0, 0, 0, 0], (self.n, 1))]).ravel())
+        output.set_value(np.hstack([self.positions(context), np.tile([1.0, 0, 0, 0], (self.n, 1))]).ravel())
 
     def bounds(self, context, output):
-        things = self.things(context)
-        output.set_value(np.hstack([things - 0.03, things + 0.03]).ravel())
+        items = self.positions(context)
+        output.set_value(np.hstack([items - 0.03, items + 0.03]).ravel())
 
     def update(self, context, discrete):
         held, was_closed, slips = context.get_discrete_state(0).value()[-3:]
-        things = self.things(context).copy()
+        items = self.positions(context).copy()
         p, closed = self.pose.Eval(context)[:3], self.gripper.Eval(context)[0]
         if closed and not was_closed:
-            distance = np.linalg.norm(things - p, axis=1)
+            distance = np.linalg.norm(items - p, axis=1)
             if distance.min() < REACH_OF_FINGERS:
                 held, slips = (distance.argmin(), slips) if slips <= 0 else (-1, slips - 1)
         if not closed:
             held = -1
         if held >= 0:
-            things[int(held)] = p
-        discrete.set_value(0, np.concatenate([things.ravel(), [held, closed, slips]]))
+            items[int(held)] = p
+        discrete.set_value(0, np.concatenate([items.ravel(), [held, closed, slips]]))
 
 
-def load(things, goals, *, slips=0, seconds=240.0, seed=0, X_WB=None, options=None):
+def load(items, goals, *, slips=0, seconds=240.0, seed=0, X_WB=None, options=None):
     X_WB = X_WB or RigidTransform()
     canal = learn_canal([arch(-0.12), arch(0.12)])
     builder = DiagramBuilder()
@@ -71,7 +71,7 @@ def load(things, goals, *, slips=0, seconds=240.0, seed=0, X_WB=None, options=No
     person = SimulatedOperator.AddToBuilder(
         builder=builder, canal=canal, goals=goals, X_WB=X_WB, options=options, seed=seed
     )
-    world = builder.AddSystem(StickyWorld(things, slips))
+    world = builder.AddSystem(StickyWorld(items, slips))
     builder.Connect(person.GetOutputPort("joystick"), navigator.GetInputPort("joystick"))
     for port in ("X_BT_desired", "gripper_command"):
         builder.Connect(navigator.GetOutputPort(port), world.GetInputPort(port))
@@ -99,17 +99,17 @@ def load(things, goals, *, slips=0, seconds=240.0, seed=0, X_WB=None, options=No
     state = NavigationState.from_vector(
         navigator.GetOutputPort("navigation_state").Eval(navigator.GetMyContextFromRoot(root))
     )
-    return world.things(world.GetMyContextFromRoot(root)), state, root.get_time()
+    return world.positions(world.GetMyContextFromRoot(root)), state, root.get_time()
 
 
 PICK = np.array([0.4, -0.4, 0.5])
 PLACE = np.array([0.4, 0.4, 0.5])
 
 
-def test_brings_each_thing_to_its_mark():
-    things = PICK + np.array([[0.06, 0, 0], [-0.05, 0, 0.0], [0.0, 0, 0.0]])
+def test_brings_each_item_to_its_mark():
+    items = PICK + np.array([[0.06, 0, 0], [-0.05, 0, 0.0], [0.0, 0, 0.0]])
     marks = PLACE + np.array([[-0.07, 0, 0], [0.02, 0, 0], [0.08, 0, 0]])
-    end, state, time = load(things, [MarkGoal(m) for m in marks])
+    end, state, time = load(items, [MarkGoal(m) for m in marks])
     assert np.linalg.norm(end - marks, axis=1).max() < 0.03
     assert state.corrections >= 3
     assert state.backtracks == 0
@@ -124,14 +124,14 @@ def test_goes_back_when_a_grip_did_not_hold():
 
 
 def test_pushes_in_what_hangs_out_and_then_gives_up():
-    # The drum lies beyond the canal's end: in this world nothing pushed moves, so the thing stays out.
+    # The drum lies beyond the canal's end: in this world nothing pushed moves, so the item stays out.
     goal = DrumGoal(p_WD=PLACE + [0, 0.1, 0], inward=np.array([0, 1.0, 0]), depth=0.3, radius=0.25)
     _, state, _ = load(PICK[None], [goal], seconds=400)
     assert state.backtracks >= 4
     assert not state.running, "gives up, and says so by stopping"
 
 
-def test_a_thing_let_go_too_early_is_pushed_in():
+def test_an_item_let_go_too_early_is_pushed_in():
     # Behind the door only at the canal's end; what sticks to the closed gripper stands for what is pushed.
     goal = DrumGoal(p_WD=PLACE - [0, 0.04, 0], inward=np.array([0, 1.0, 0]), depth=0.3, radius=0.25, clearance=0.02)
     early = OperatorOptions(let_go_at=0.7)
@@ -146,8 +146,8 @@ def test_a_thing_let_go_too_early_is_pushed_in():
 
 def test_what_may_lie_anywhere_is_laid_side_by_side():
     goal = DrumGoal(p_WD=PLACE - [0, 0.1, 0], inward=np.array([0, 1.0, 0]), depth=0.4, radius=0.3)
-    things = PICK + np.array([[0.06, 0, 0], [-0.05, 0, 0], [0.0, 0, 0.0]])
-    end, state, _ = load(things, [goal] * 3)
+    items = PICK + np.array([[0.06, 0, 0], [-0.05, 0, 0], [0.0, 0, 0.0]])
+    end, state, _ = load(items, [goal] * 3)
     left, middle, right = np.sort(end[:, 0])
     assert right - middle > 0.07
     assert middle - left > 0.07

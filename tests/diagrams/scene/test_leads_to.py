@@ -1,4 +1,4 @@
-"""A canal that does not lead to a scenario's things is refused, one that does is not."""
+"""A canal that does not lead to a scenario's items is refused, one that does is not."""
 
 from dataclasses import replace
 
@@ -8,18 +8,18 @@ import pytest
 from canal.editing import cut
 from canal.errors import InputError
 from diagrams.scenario import load_scenario, shipped_scenarios, with_items
-from diagrams.scene.leads_to import check_leads_to_things
+from diagrams.scene.leads_to import check_leads_to_items
 from geosacs_drake.prepare_canal import prepare_canal
 from geosacs_drake.run_options import RunOptions
 
 
 @pytest.mark.parametrize("name", shipped_scenarios())
-def test_shipped_canals_lead_to_the_things(name):
+def test_shipped_canals_lead_to_the_items(name):
     canal = prepare_canal(load_scenario(name), RunOptions())
     for kind in ("soft", "rigid"):
         scenario = with_items(load_scenario(name), kind)
         for seed in range(10):
-            check_leads_to_things(scenario, canal, seed)
+            check_leads_to_items(scenario, canal, seed)
 
 
 @pytest.mark.parametrize(
@@ -37,10 +37,10 @@ def test_a_canal_elsewhere_is_refused_with_distance_and_remedy(name, by, says):
     canal = prepare_canal(scenario, RunOptions())
     there = replace(canal, directrix=canal.directrix + np.array(by), support_planes=())
     if says is None:
-        check_leads_to_things(scenario, there, 0)
+        check_leads_to_items(scenario, there, 0)
         return
     with pytest.raises(InputError, match=says) as error:
-        check_leads_to_things(scenario, there, 0)
+        check_leads_to_items(scenario, there, 0)
     assert "retarget" in str(error.value)
     assert "\n" not in str(error.value)
 
@@ -50,4 +50,4 @@ def test_a_canal_that_ends_before_the_drum_is_refused():
     canal = prepare_canal(scenario, RunOptions())
     short = cut(canal, 0.0, 0.6 * (canal.n_disks - 1))
     with pytest.raises(InputError, match=r"the drum is 0\.\d\d m .* its place disk"):
-        check_leads_to_things(scenario, short, 0)
+        check_leads_to_items(scenario, short, 0)

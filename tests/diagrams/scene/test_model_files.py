@@ -101,7 +101,7 @@ def test_what_is_wrong_is_said(folder, text, says):
     assert "\n" not in str(error.value)
 
 
-def test_a_thing_that_is_welded_needs_no_mass(folder):
+def test_a_fixture_needs_no_mass(folder):
     (folder / "m.sdf").write_text(sdf(BOX))
     check_model(folder / "m.sdf", [folder], carried=False)
 
@@ -109,9 +109,9 @@ def test_a_thing_that_is_welded_needs_no_mass(folder):
 @pytest.mark.parametrize(
     ("model", "says"),
     [
-        ("m.sdf", r"things\[1\].model: m.sdf has no collision"),
-        ("../secret.sdf", r"things\[1\].model: .*outside"),
-        ("../secret.obj", r"things\[1\].model: secret.obj is no model"),
+        ("m.sdf", r"fixtures\[1\].model: m.sdf has no collision"),
+        ("../secret.sdf", r"fixtures\[1\].model: .*outside"),
+        ("../secret.obj", r"fixtures\[1\].model: secret.obj is no model"),
         ("x" * 300, "does not exist|too long"),
     ],
 )
@@ -119,7 +119,7 @@ def test_a_scenario_is_refused_with_the_key(folder, model, says):
     (folder / "m.sdf").write_text(sdf(MASS))
     (folder.parent / "secret.sdf").write_text(sdf(MASS + BOX))
     scenario = yaml.safe_load((SCENARIOS / "relocation.yaml").read_text())
-    scenario["things"][1]["model"] = model
+    scenario["fixtures"][1]["model"] = model
     (folder / "s.yaml").write_text(yaml.safe_dump(scenario))
     with pytest.raises(InputError, match=says) as error:
         load_scenario(folder / "s.yaml")

@@ -1,4 +1,4 @@
-"""A scene whose things lie inside each other is refused in one line; the shipped ones are not, whatever the seed."""
+"""A scene whose bodies lie inside each other is refused in one line; the shipped ones are not, whatever the seed."""
 
 import pytest
 
@@ -7,21 +7,21 @@ from diagrams.scenario import load_scenario
 from diagrams.station.lio_station import LioStation
 
 
-def laundry_with(**places):
-    """Soft laundry, with pieces (and nothing random) at x, y in the basket's frame."""
+def laundry_with(**positions):
+    """Deformable laundry, with clothes (and nothing random) at x, y in the basket's frame."""
     scenario = load_scenario("laundry")
     scenario.item_spacing = 0.0
     for item in scenario.items:
-        if item.name in places:
-            item.soft_start.center[:2] = places[item.name]
-            item.soft_start.half_widths = [0.0, 0.0]
-            item.soft_start.yaw_deg = [0.0, 0.0]
+        if item.name in positions:
+            item.deformable_start.center[:2] = positions[item.name]
+            item.deformable_start.half_widths = [0.0, 0.0]
+            item.deformable_start.yaw_deg = [0.0, 0.0]
     return scenario
 
 
-def test_things_inside_each_other_are_refused():
+def test_bodies_inside_each_other_are_refused():
     scenario = load_scenario("laundry")
-    basket = next(thing for thing in scenario.things if thing.name == "basket")
+    basket = next(fixture for fixture in scenario.fixtures if fixture.name == "basket")
     basket.position[2] -= 0.05
     with pytest.raises(InputError, match=r"'basket' lies [\d.]+ mm inside 'table'; .*move one"):
         LioStation(scenario)

@@ -1,4 +1,4 @@
-"""Where a canal comes down aslant, nothing stands in the hand's way: things are drawn, dealt and taken in turn."""
+"""Where a canal comes down aslant, nothing stands in the hand's way: items are drawn, dealt and taken in turn."""
 
 from dataclasses import replace
 from itertools import permutations
@@ -60,7 +60,7 @@ def stands_free(spots: list[np.ndarray], room: Room) -> np.ndarray:
 
 
 @pytest.mark.parametrize("dx", [0.03, 0.06, -0.06])
-def test_things_can_be_carried_one_after_the_other(dx: float) -> None:
+def test_items_can_be_carried_one_after_the_other(dx: float) -> None:
     scenario = slanted(dx)
     room = scenario.items[0].start.room
     assert room is not None
@@ -87,7 +87,7 @@ def test_where_the_hand_always_meets_another_is_refused() -> None:
 
 @pytest.mark.parametrize("first", [0, 1])
 def test_the_person_takes_first_what_is_in_the_way(canal: CanalSurface, first: int) -> None:
-    """Two things lie clear of each other, and so do their marks; but the way to one mark leads over the other."""
+    """Two items lie clear of each other, and so do their marks; but the way to one mark leads over the other."""
     last = canal.n_disks - 1
     start, end = canal.directrix[0], canal.directrix[last]
     room = room_at(canal, last)
@@ -115,4 +115,4 @@ def test_the_person_takes_first_what_is_in_the_way(canal: CanalSurface, first: i
     )
     state = OperatorState(mode=float(Mode.PICK))
     chosen = policy.decide(state.pack(np.zeros(2), np.zeros(2)), sight, 1.0)
-    assert OperatorState.unpack(chosen, 2)[0].thing == first
+    assert OperatorState.unpack(chosen, 2)[0].item == first

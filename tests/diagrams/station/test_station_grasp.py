@@ -1,4 +1,4 @@
-"""Grasps are friction: closed around a thing, the pads carry it, and it slips less than 3 mm."""
+"""Grasps are friction: closed around an item, the pads carry it, and it slips less than 3 mm."""
 
 import numpy as np
 import pytest
@@ -21,7 +21,7 @@ SLIP = 3e-3
 
 
 def reach(solver, position, q):
-    """Posture for the gripper to point down at a place in B, from a posture near by."""
+    """Posture for the gripper to point down at a position in B, from a posture near by."""
     for _ in range(20):
         q = solver.solve(np.concatenate([position, DOWN]), 15.0, q, 1.0).q
     return q
@@ -31,10 +31,10 @@ def reach(solver, position, q):
 def test_carried_without_slip(name):
     scenario = load_scenario("relocation" if name in ("apple", "cup", "cube") else "laundry")
     (item,) = (i for i in scenario.items if i.name == name)
-    # One thing on a bare table before the robot, its long side across the fingers.
-    table = next(t for t in scenario.things if t.name == "table")
+    # One item on a bare table before the robot, its long side across the fingers.
+    table = next(t for t in scenario.fixtures if t.name == "table")
     table.model, table.position, table.yaw_deg, scenario.robot = "laundry_table", [0.46, 0.0, 0.0], 0.0, Robot()
-    scenario.things, scenario.items = [table], [item]
+    scenario.fixtures, scenario.items = [table], [item]
     item.kind = "rigid"
     scenario.control_rate_hz = 1 / STEP
     item.start = Region(center=[0.45, 0.0, 0.30])

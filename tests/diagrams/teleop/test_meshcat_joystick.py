@@ -34,10 +34,10 @@ def test_the_dead_zone_is_round_and_starts_from_zero():
 
 
 def test_the_buttons_of_a_standard_gamepad():
-    for button, place in ((0, GRIPPER), (1, REVERSE), (9, START), (8, STOP)):
+    for button, index in ((0, GRIPPER), (1, REVERSE), (9, START), (8, STOP)):
         values = np.zeros(17)
         values[button] = 1
-        np.testing.assert_array_equal(np.flatnonzero(read_gamepad([0, 0], values, 0.1)), [place])
+        np.testing.assert_array_equal(np.flatnonzero(read_gamepad([0, 0], values, 0.1)), [index])
 
 
 def test_every_control_is_written_down():
@@ -75,11 +75,11 @@ class Running:
         wait_until(sampled, f"the joystick {wanted}; it is {self.joystick}")
 
 
-def vector(places):
-    """A joystick vector from place → value."""
+def vector(values):
+    """A joystick vector from index → value."""
     joystick = np.zeros(6)
-    for place, value in places.items():
-        joystick[place] = value
+    for index, value in values.items():
+        joystick[index] = value
     return joystick
 
 

@@ -9,7 +9,7 @@ from waiting import wait_until
 
 from canal.navigation import NavigationState
 from diagrams.view.canal_view import CanalView
-from diagrams.view.trail_view import PIECES, POINTS, STEP, TrailView
+from diagrams.view.trail_view import POINTS, SEGMENTS, STEP, TrailView
 
 DISTANCE = 1e-6  # [m] the page computes in single precision
 
@@ -150,17 +150,17 @@ def test_the_trail_follows_the_tool_and_forgets_its_beginning(meshcat_page):
         view.GetInputPort("X_BT").FixValue(simulator.get_mutable_context(), [*position, 1, 0, 0, 0])
         simulator.AdvanceTo(simulator.get_context().get_time() + seconds)
 
-    for _ in range((PIECES + 3) * POINTS):
+    for _ in range((SEGMENTS + 3) * POINTS):
         position[0] += 1.2 * STEP
         run(1 / 16)
-    piece = simulator.get_context().get_discrete_state(0).value().copy()
+    segment = simulator.get_context().get_discrete_state(0).value().copy()
     position[:] = np.nan
     run(0.5)
-    np.testing.assert_array_equal(simulator.get_context().get_discrete_state(0).value(), piece)
+    np.testing.assert_array_equal(simulator.get_context().get_discrete_state(0).value(), segment)
     position[:] = 0, 0, 3
     run(0.5)
     begun, count = simulator.get_context().get_discrete_state(0).value()[:2]
-    assert (begun, count) == (piece[0] + 1, 1)  # a jump is not joined to what was
+    assert (begun, count) == (segment[0] + 1, 1)  # a jump is not joined to what was
     meshcat.Flush()
-    wait_until(lambda: len(seen.children("trail")) > PIECES, "the trail")
-    wait_until(lambda: len(seen.visible("trail")) == PIECES, "the oldest pieces to be hidden")
+    wait_until(lambda: len(seen.children("trail")) > SEGMENTS, "the trail")
+    wait_until(lambda: len(seen.visible("trail")) == SEGMENTS, "the oldest segments to be hidden")

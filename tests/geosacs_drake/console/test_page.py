@@ -195,7 +195,7 @@ def test_the_end_is_shown_with_its_measures(console, server):
     server.show_end(
         {
             "success": True,
-            "reason": "every thing is in its place",
+            "reason": "every item is placed",
             "items": [{"name": "sock", "placed": True}],
             "task_time_s": 83.0,
             "correction_share": 0.12,
@@ -207,5 +207,5 @@ def test_the_end_is_shown_with_its_measures(console, server):
     )
     card = console.get_by_role("dialog", name="Done")
     card.wait_for()
-    for words in ("Every thing is in its place.", "1 of 1", "1:23 min", "12 % of it, 14 times", "none"):
+    for words in ("Every item is placed.", "1 of 1", "1:23 min", "12 % of it, 14 times", "none"):
         assert words in card.inner_text()

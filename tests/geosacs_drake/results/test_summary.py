@@ -30,7 +30,7 @@ def result(**changes) -> RunResult:
     values = {
         "task": "laundry",
         "seed": 3,
-        "reason": "every thing is in its place",
+        "reason": "every item is placed",
         "item_names": ["sock", "towel"],
         "placed_times": np.array([4.0, 9.5]),
         "contact_pairs": ["lio-machine"],
@@ -115,8 +115,8 @@ def test_measured_distance_has_the_whole_push(delay):
 @pytest.mark.parametrize(
     ("changes", "success", "says"),
     [
-        ({}, True, "every thing is in its place"),
-        ({"reason": "time is up after 10 s"}, True, "every thing is in its place (time is up after 10 s)"),
+        ({}, True, "every item is placed"),
+        ({"reason": "time is up after 10 s"}, True, "every item is placed (time is up after 10 s)"),
         ({"reason": "interrupted", "placed_times": np.array([4.0, -1.0])}, False, "interrupted"),
         ({"reason": "the solver failed at 3 s", "failure": "SAP"}, False, "the solver failed at 3 s"),
     ],
@@ -154,7 +154,7 @@ def test_each_figure_has_one_definition():
     assert keys_of(summarize(result(failure="SAP"))) == set(keys)
 
 
-def test_one_thing_short_is_no_success():
+def test_one_item_short_is_no_success():
     summary = summarize(result(placed_times=np.array([4.0, -1.0]), reason="time is up"))
     assert not summary["success"]
     assert summary["items"][1] == {"name": "towel", "placed": False, "time_s": None}

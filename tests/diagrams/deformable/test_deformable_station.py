@@ -1,10 +1,10 @@
-"""The Lio station with soft clothes: the same ports, honest numbers."""
+"""The Lio station with deformable clothes: the same ports, honest numbers."""
 
 import numpy as np
 import pytest
 from pydrake.systems.analysis import Simulator
 
-from diagrams.deformable.items import soft_positions
+from diagrams.deformable.items import deformable_positions
 from diagrams.scenario import load_scenario, with_items
 from diagrams.station.lio_station import START_POSTURE, LioStation
 
@@ -23,12 +23,12 @@ def settled():
 
 def test_ports_agree_with_the_nodes(settled):
     station, context = settled
-    items = station.scene.soft_items
+    items = station.scene.deformable_items
     poses = station.GetOutputPort("item_poses").Eval(context).reshape(-1, 7)
     bounds = station.GetOutputPort("item_bounds").Eval(context).reshape(-1, 6)
     assert len(items) == len(poses) == 3
     for item, pose, box in zip(items, poses, bounds, strict=True):
-        nodes = soft_positions(station.plant, station.plant_context(context), item)
+        nodes = deformable_positions(station.plant, station.plant_context(context), item)
         np.testing.assert_allclose(pose, [*nodes.mean(axis=0), 1, 0, 0, 0], atol=1e-12)
         np.testing.assert_allclose(box, [*nodes.min(axis=0), *nodes.max(axis=0)], atol=1e-12)
 
@@ -44,7 +44,10 @@ def test_clothes_lie_in_the_basket_and_neither_creep_nor_leak(settled):
 
 def test_clothes_lie_apart(settled):
     station, context = settled
-    clouds = [soft_positions(station.plant, station.plant_context(context), item) for item in station.scene.soft_items]
+    clouds = [
+        deformable_positions(station.plant, station.plant_context(context), item)
+        for item in station.scene.deformable_items
+    ]
     in_base = [station.X_WB.inverse().multiply(cloud.T) for cloud in clouds]  # the basket stands along its axes
     for i in range(3):
         for j in range(i):

@@ -22,8 +22,14 @@ from pydrake.systems.analysis import Simulator
 from pydrake.systems.framework import DiagramBuilder
 
 from diagrams.deformable.contact import MARGIN, prepare_for_cloth
-from diagrams.deformable.items import SoftMaterial, add_soft_item, node_masses, soft_positions, soft_velocities
-from diagrams.deformable.laundry import SoftShape
+from diagrams.deformable.items import (
+    DeformableMaterial,
+    add_deformable_item,
+    deformable_positions,
+    deformable_velocities,
+    node_masses,
+)
+from diagrams.deformable.laundry import DeformableShape
 from diagrams.geometry.box_depth import FixedBoxes
 from diagrams.scene.world import Contact
 from diagrams.station.lio_station import plant_config
@@ -43,7 +49,7 @@ class Setting:
     """Pressure gradient of rigid shapes [Pa/m]; None: as in the station."""
     margin: float = MARGIN
     """Of foreseen contact [m]."""
-    material: SoftMaterial = field(default_factory=SoftMaterial)
+    material: DeformableMaterial = field(default_factory=DeformableMaterial)
 
 
 def _box(plant: MultibodyPlant, body: RigidBody, name: str, size: tuple, X: RigidTransform, friction: float) -> None:
@@ -97,9 +103,9 @@ def add_hand(plant: MultibodyPlant) -> RigidBody:
 
 
 class Rig:
-    """A simulation of the hand and some pieces; moves by cubic steps, keeps the CPU time of each tick."""
+    """A simulation of the hand and some clothes; moves by cubic steps, keeps the CPU time of each tick."""
 
-    def __init__(self, pieces: list[tuple[str, SoftShape, list[float], float]], setting: Setting) -> None:
+    def __init__(self, clothes: list[tuple[str, DeformableShape, list[float], float]], setting: Setting) -> None:
         """Put (name, shape, position [m], yaw [rad]) into the scene."""
         builder = DiagramBuilder()
         contact = Contact(setting.time_step, setting.approximation, stiction_tolerance=setting.stiction_tolerance)
@@ -108,14 +114,14 @@ class Rig:
         self.palm = add_hand(self.plant)
         hand = self.palm.model_instance()
         self.items = [
-            add_soft_item(
+            add_deformable_item(
                 plant=self.plant,
                 name=name,
                 shape=shape,
                 X_WP=RigidTransform(RollPitchYaw(0, 0, yaw), position),
                 material=setting.material,
             )
-            for name, shape, position, yaw in pieces
+            for name, shape, position, yaw in clothes
         ]
         gradients = {} if setting.gradient is None else {"surroundings": setting.gradient, "pads": setting.gradient}
         prepare_for_cloth(
@@ -152,30 +158,30 @@ class Rig:
         self.move(list(self.command), duration)
 
     def nodes(self, k: int) -> np.ndarray:
-        """Of piece k in W [m], shape (N, 3)."""
-        return soft_positions(self.plant, self.context, self.items[k])
+        """Of item k in W [m], shape (N, 3)."""
+        return deformable_positions(self.plant, self.context, self.items[k])
 
     def nodes_in_hand(self, k: int) -> np.ndarray:
-        """Of piece k in the palm's frame [m], shape (N, 3)."""
+        """Of item k in the palm's frame [m], shape (N, 3)."""
         X_WP = self.plant.EvalBodyPoseInWorld(self.context, self.palm)
         return X_WP.inverse().multiply(self.nodes(k).T).T
 
     def depth(self, k: int) -> float:
-        """Of the node of piece k that lies deepest in floor or drum [m]."""
+        """Of the node of item k that lies deepest in floor or drum [m]."""
         return self._boxes.depth(self.nodes(k))
 
     def speed(self, k: int) -> float:
-        """Of the fastest node of piece k [m/s]."""
-        return float(np.linalg.norm(soft_velocities(self.plant, self.context, self.items[k]), axis=1).max())
+        """Of the fastest node of item k [m/s]."""
+        return float(np.linalg.norm(deformable_velocities(self.plant, self.context, self.items[k]), axis=1).max())
 
     def kinetic_energy(self) -> float:
-        """Of all pieces [J]."""
+        """Of all items [J]."""
         energies = (
-            0.5 * node_masses(i.shape) @ (soft_velocities(self.plant, self.context, i) ** 2).sum(axis=1)
+            0.5 * node_masses(i.shape) @ (deformable_velocities(self.plant, self.context, i) ** 2).sum(axis=1)
             for i in self.items
         )
         return float(sum(energies))
 
     def potential_energy(self) -> float:
-        """Of all pieces in gravity [J], the floor's surface at zero."""
+        """Of all items in gravity [J], the floor's surface at zero."""
         return float(sum(9.81 * node_masses(i.shape) @ (self.nodes(k)[:, 2] - 0.3) for k, i in enumerate(self.items)))

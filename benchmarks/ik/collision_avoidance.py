@@ -1,4 +1,4 @@
-"""Keeping clear: a sweep whose unconstrained optimum goes 40 mm into a wall, followed at the margin's distance."""
+"""Collision avoidance: a sweep whose unconstrained optimum goes 40 mm into a wall, followed at the margin."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from pydrake.systems.framework import Diagram, DiagramBuilder
 
 from benchmarks.ik.cases import DT, pose_of
 from benchmarks.table import Row
-from diagrams.ik.options import IkOptions, KeepClearOptions
+from diagrams.ik.options import CollisionAvoidanceOptions, IkOptions
 from diagrams.ik.solver import IkSolver
 from diagrams.station.lio_arm import TCP_FRAME, make_arm_plant
 from models import LIO_URDF
@@ -46,10 +46,10 @@ def arm_and(shape: Shape, p: list[float]) -> tuple[MultibodyPlant, Diagram]:
 
 
 def solver_beside_wall() -> IkSolver:
-    """A solver that keeps clear of the wall."""
+    """A solver that avoids the wall."""
     plant, diagram = arm_and(Box(0.2, 2.0, 2.0), [WALL_X + 0.1, 0.0, 1.0])
-    keep_clear = KeepClearOptions(margin=MARGIN, solid_bodies=["obstacle"])
-    return IkSolver(plant, TCP_FRAME, IkOptions(keep_clear=keep_clear), diagram=diagram)
+    collision_avoidance = CollisionAvoidanceOptions(margin=MARGIN, solid_bodies=["obstacle"])
+    return IkSolver(plant, TCP_FRAME, IkOptions(collision_avoidance=collision_avoidance), diagram=diagram)
 
 
 def deep_path(reach: float = DEEP) -> list[np.ndarray]:
@@ -71,7 +71,7 @@ def least_distance(solver: IkSolver, q: np.ndarray) -> float:
     return float(solver.clearance.near(0.1 - MARGIN).distances.min(initial=0.1))
 
 
-def keep_clear() -> list[Row]:
+def collision_avoidance() -> list[Row]:
     """Times of whole ticks along the sweep, how near it comes, and how deep the arm would go blind."""
     solver, blind = solver_beside_wall(), IkSolver(make_arm_plant(), TCP_FRAME)
     path = deep_path()
