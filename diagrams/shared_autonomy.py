@@ -222,7 +222,7 @@ def build_shared_autonomy(
     if canvases:
         colors = reach_report(solver, canal, start, rings=2, spokes=6, most_disks=61).colors()
     for canvas, name in canvases:
-        _show(builder, station, canvas, name)
+        show_scene(builder, station, canvas, name)
         CanalView.AddToBuilder(
             builder=builder,
             meshcat=canvas,
@@ -275,7 +275,7 @@ def build_shared_autonomy(
     )
 
 
-def _show(builder: DiagramBuilder, station: LioStation, meshcat: Meshcat, name: str) -> None:
+def show_scene(builder: DiagramBuilder, station: LioStation, meshcat: Meshcat, name: str) -> None:
     """Draw robot, fixtures and items; `name` is `view` or `recording`."""
     query = station.GetOutputPort("geometry_query")
     visualizer = builder.AddNamedSystem(f"scene_{name}", MeshcatVisualizer(meshcat, MeshcatVisualizerParams()))

@@ -22,8 +22,8 @@ from geosacs_drake.console.console import Console
 from geosacs_drake.console.mapping_choice import chosen_view
 from geosacs_drake.process.command_line import ExitStatus, end, parse_options, status_of
 from geosacs_drake.process.interrupts import Interrupts, Phase
+from geosacs_drake.process.run_again import run_again
 from geosacs_drake.replay import make_origin
-from geosacs_drake.run_again import run_again
 from geosacs_drake.run_files import finish
 from geosacs_drake.run_options import PEOPLE, RunOptions
 from geosacs_drake.run_task import RunTask, find_task

@@ -16,6 +16,7 @@ ROOMS = {
     "deformable": {"geometry"},
     "ik": set(),
     "teleop": set(),
+    "teach": {"geometry", "ik"},
     "operator": {"geometry", "scene", "teleop"},
     "scene": {"geometry", "deformable", "ik"},
     "station": {"scene", "geometry", "deformable", "ik"},

@@ -13,31 +13,20 @@ from pydrake.systems.framework import Context, DiagramBuilder, DiscreteValues, E
 from canal.navigation import FIELD_NAMES, Leg, NavigationOptions, NavigationState, leg_end, strategy_ratio
 from canal.surface import CanalSurface
 from diagrams.view import canal_meshes as meshes
+from diagrams.view.canal_drawing import CanalDrawing
 from diagrams.view.canal_meshes import TriangleMesh
 from diagrams.view.trail_view import TrailView
 
 VIEW_PERIOD = 1 / 32
 """[s] Of the pictures, Drake's own MeshcatVisualizer's default."""
 
-SURFACE = Rgba(0.16, 0.52, 0.78, 0.16)
-RINGS = Rgba(0.13, 0.33, 0.52, 0.45)
-DIRECTRIX = Rgba(0.08, 0.20, 0.62, 1.0)
-DEMONSTRATIONS = Rgba(0.80, 0.20, 0.18, 0.5)
 DISK = Rgba(1.0, 0.66, 0.10, 1.0)
 DISK_FACE = Rgba(1.0, 0.72, 0.20, 0.28)
 AXIS_X = Rgba(0.86, 0.12, 0.14, 1.0)
 AXIS_Y = Rgba(0.10, 0.62, 0.22, 1.0)
 POINT = Rgba(1.0, 0.35, 0.05, 1.0)
 AHEAD = Rgba(1.0, 0.60, 0.05, 1.0)
-"""Colours: the canal cool, what moves on it warm, the axes as everywhere red and green."""
-
-COLORED_OPACITY = 0.24
-"""Of the surface when its disks have colours, which have to be told apart."""
-GLOW = 0.12
-"""Share of its colour that a marker has without any lamp."""
-
-MOST_RINGS, RING_EVERY = 97, 3
-"""The surface is drawn through this many rims at most, and every third of them as a ring."""
+"""Colours: what moves on the canal warm, the axes as everywhere red and green."""
 
 BEAD_SPACING = 0.02
 BEAD_RADIUS = 0.005
@@ -86,6 +75,7 @@ class CanalView(LeafSystem):
         self._X_WB = X_WB or RigidTransform()
         self._disk_colors = None if disk_colors is None else np.asarray(disk_colors, dtype=float)
         self._path = path
+        self._drawing = CanalDrawing(meshcat, path)
         self._beads = np.interp(
             np.arange(BEAD_SPACING / 2, canal.length, BEAD_SPACING), canal.arc, np.arange(canal.n_disks)
         )
@@ -136,60 +126,20 @@ class CanalView(LeafSystem):
             )
         return view
 
-    def _mesh(self, path: str, mesh: TriangleMesh, rgba: Rgba, *, closed: bool = True) -> None:
-        path = f"{self._path}/{path}"
-        # Both sides of a translucent face cost two passes, and nobody sees into a closed body.
-        side = Meshcat.SideOfFaceToRender.kFrontSide if closed else Meshcat.SideOfFaceToRender.kDoubleSide
-        self._meshcat.SetTriangleMesh(path, mesh.vertices, mesh.faces, rgba, side=side)
-        self._set_apart(path, rgba)
-        if rgba.a() < 1:
-            self._see_through(path)
-
-    def _set_apart(self, path: str, rgba: Rgba) -> None:
-        # What is drawn into the room for explanation is not in it: it casts no shadow, and shines by itself.
-        self._meshcat.SetProperty(f"{path}/<object>", "castShadow", False)
-        for channel, value in zip("rgb", (rgba.r(), rgba.g(), rgba.b()), strict=True):
-            self._meshcat.SetProperty(f"{path}/<object>", f"material.emissive.{channel}", GLOW * value)
-
-    def _see_through(self, path: str) -> None:
-        # Else a translucent face hides the translucent ones behind it.
-        self._meshcat.SetProperty(f"{path}/<object>", "material.depthWrite", False)
-
-    def _colored_mesh(self, name: str, mesh: TriangleMesh, colors: np.ndarray) -> None:
-        """Draw a mesh that has as many vertices for each disk, in the colours of the disks (n, 3)."""
-        each = np.repeat(colors, mesh.vertices.shape[1] // len(colors), axis=0)
-        self._meshcat.SetTriangleColorMesh(f"{self._path}/{name}", mesh.vertices, mesh.faces, each.T)
-        self._meshcat.SetProperty(f"{self._path}/{name}/<object>", "castShadow", False)
-
     def _publish_canal(self, context: Context, discrete: DiscreteValues) -> EventStatus:
         canal, meshcat, path = self._canal, self._meshcat, self._path
-        meshcat.Delete(path)
-        meshcat.SetTransform(path, self._X_WB)
-        disks = np.unique(np.linspace(0, canal.n_disks - 1, min(canal.n_disks, MOST_RINGS)).astype(int))
-        skin = meshes.canal_skin(canal, disks)
-        rings = meshes.canal_rings(canal, disks[::RING_EVERY], 0.0008)
-        if self._disk_colors is None:
-            self._mesh("surface", skin, SURFACE, closed=False)
-            self._mesh("rings", rings, RINGS)
-        else:
-            self._colored_mesh("surface", skin, self._disk_colors[disks])
-            meshcat.SetProperty(f"{path}/surface/<object>", "opacity", COLORED_OPACITY)
-            self._see_through(f"{path}/surface")
-            # The skin is too clear for its colour to be seen at a glance.
-            self._colored_mesh("rings", rings, self._disk_colors[disks[::RING_EVERY]])
-        self._mesh("directrix", meshes.dashes(canal.directrix, 0.0025, 0.014, 0.010), DIRECTRIX)
-        lines = [meshes.tube(demonstration[disks], 0.001, 4) for demonstration in canal.demonstrations]
-        self._mesh("demonstrations", meshes.merge(lines), DEMONSTRATIONS)
-        self._mesh("disk/size/ring", meshes.ring(0.04), DISK)
-        self._mesh("disk/size/face", meshes.disc(), DISK_FACE, closed=False)
-        self._mesh("x/size/arrow", meshes.arrow(), AXIS_X)
-        self._mesh("y/size/arrow", meshes.arrow(), AXIS_Y)
+        self._drawing.clear(self._X_WB)
+        self._drawing.draw(canal, self._disk_colors)
+        self._drawing.mesh("disk/size/ring", meshes.ring(0.04), DISK)
+        self._drawing.mesh("disk/size/face", meshes.disc(), DISK_FACE, closed=False)
+        self._drawing.mesh("x/size/arrow", meshes.arrow(), AXIS_X)
+        self._drawing.mesh("y/size/arrow", meshes.arrow(), AXIS_Y)
         meshcat.SetObject(f"{path}/point", Sphere(0.013), POINT)
-        self._set_apart(f"{path}/point", POINT)
+        self._drawing.set_apart("point", POINT)
         ball = meshes.bead()
         ball = TriangleMesh(BEAD_RADIUS * ball.vertices, ball.faces)
         for k in range(len(self._beads)):
-            self._mesh(f"ahead/{k:03d}", ball, AHEAD)
+            self._drawing.mesh(f"ahead/{k:03d}", ball, AHEAD)
             meshcat.SetProperty(self._bead(k), "visible", False, context.get_time())
         discrete.set_value(self._key, np.full(KEY_SIZE, np.nan))
         discrete.set_value(self._visible, np.zeros(len(self._beads)))

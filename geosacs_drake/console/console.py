@@ -23,7 +23,7 @@ from geosacs_drake.console.link import Answers
 from geosacs_drake.console.mapping_choice import MappingChoice, chosen_view
 from geosacs_drake.console.server import ConsoleServer
 from geosacs_drake.console.status import StatusReporter
-from geosacs_drake.run_again import earlier_address
+from geosacs_drake.process.run_again import earlier_address
 
 WAIT_FOR_PAGE_S = 15.0
 """[s] With no page after so long the simulated operator begins."""
@@ -76,11 +76,8 @@ class Console:
 
     def open_browser(self) -> None:
         """Open the page where there is a display and a terminal to close it from."""
-        if self._again:
-            return
-        display = os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY") or sys.platform in ("darwin", "win32")
-        if display and sys.stdout.isatty():
-            webbrowser.open(self.address)
+        if not self._again:
+            open_page(self.address)
 
     def say(self, announcement: Announcement) -> None:
         """What a person is told goes to the history."""
@@ -181,3 +178,14 @@ class Console:
     def close(self) -> None:
         """Let go of the pages and the port."""
         self.server.stop()
+
+
+def open_page(address: str) -> None:
+    """Open a page in a browser where there is a display, and a terminal to end the command from.
+
+    Args:
+        address: of the page.
+    """
+    display = os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY") or sys.platform in ("darwin", "win32")
+    if display and sys.stdout.isatty():
+        webbrowser.open(address)

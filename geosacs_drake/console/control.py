@@ -47,6 +47,8 @@ class Control:
 
     person_asked: bool = False
     """Whether a person is in charge from the beginning."""
+    axes: int = 2
+    """Of the stick."""
     clock: Callable[[], float] = time.monotonic
     _lock: threading.Lock = field(default_factory=threading.Lock)
 
@@ -55,24 +57,25 @@ class Control:
         self._holder = ""
         self._stopped = False
         self._begun = threading.Event()
-        self._stick, self._stick_time, self._tap = (0.0, 0.0), -math.inf, (0.0, 0.0)
-        self._steps: list[tuple[float, float]] = []
+        self._centre: tuple[float, ...] = (0.0,) * self.axes
+        self._stick, self._stick_time, self._tap = self._centre, -math.inf, self._centre
+        self._steps: list[tuple[float, ...]] = []
         self._waiting = dict.fromkeys(BUTTONS, 0)
         self._levels = dict.fromkeys(BUTTONS, False)
         self._sampled = np.zeros(JOYSTICK_SIZE)
 
     # ---- what pages do ----
 
-    def drive(self, page: str, stick: tuple[float, float], age_s: float = 0.0) -> str:
-        """Hold the stick at `stick` (k_x, k_y) until told otherwise, or until nobody confirms it.
+    def drive(self, page: str, stick: tuple[float, ...], age_s: float = 0.0) -> str:
+        """Hold the stick at `stick` until told otherwise, or until nobody confirms it.
 
         Args:
             page: that asks.
-            stick: right and up, in the unit disc.
+            stick: right and up, in the unit disc; or as many axes as it has.
             age_s: how old the command is, [s].
         """
         with self._lock:
-            moved = stick != (0.0, 0.0)
+            moved = any(stick)
             if moved and (refusal := self._refusal(page)):
                 return refusal
             if page != self._holder or age_s > STALE_S:
@@ -83,7 +86,7 @@ class Control:
             self._stick, self._stick_time = stick, self.clock() - age_s
             return ""
 
-    def step(self, page: str, samples: list[tuple[float, float]], age_s: float = 0.0) -> str:
+    def step(self, page: str, samples: list[tuple[float, ...]], age_s: float = 0.0) -> str:
         """Move the stick so for as many samples as are given, and centre it then.
 
         Args:
@@ -173,14 +176,9 @@ class Control:
         """What the person's joystick is now, for one sample of 20 Hz: a press is one sample long."""
         with self._lock:
             joystick = np.zeros(JOYSTICK_SIZE)
-            if not self._stopped:
-                joystick[:GRIPPER] = self._next_stick()
-            self._tap = (0.0, 0.0)
+            joystick[:GRIPPER], pressed = self._take_sample()
             for button, index in BUTTONS.items():
-                level = self._waiting[button] > 0 and not self._levels[button]
-                self._waiting[button] -= level
-                self._levels[button] = level
-                joystick[index] = float(level)
+                joystick[index] = float(button in pressed)
             self._sampled = clean_joystick(joystick)
             return LiveSample(self._sampled, self._person)
 
@@ -192,13 +190,26 @@ class Control:
 
     # ---- with the lock held ----
 
-    def _next_stick(self) -> tuple[float, float]:
+    def _take_sample(self) -> tuple[tuple[float, ...], set[str]]:
+        """The stick of this sample, and the buttons that are pressed in it."""
+        stick = self._centre if self._stopped else self._next_stick()
+        self._tap = self._centre
+        pressed = set()
+        for button in BUTTONS:
+            level = self._waiting[button] > 0 and not self._levels[button]
+            self._waiting[button] -= level
+            self._levels[button] = level
+            if level:
+                pressed.add(button)
+        return stick, pressed
+
+    def _next_stick(self) -> tuple[float, ...]:
         if self._steps:
             return self._steps.pop(0)
         if self.clock() - self._stick_time > STALE_S:
-            return 0.0, 0.0
+            return self._centre
         # A push that began and ended between two samples is one sample long.
-        return self._stick if self._stick != (0.0, 0.0) else self._tap
+        return self._stick if any(self._stick) else self._tap
 
     def _refusal(self, page: str, *, start: bool = False) -> str:
         """Why a page may not steer now; empty, and the page in control, where it may."""
@@ -210,7 +221,7 @@ class Control:
         return ""
 
     def _rest(self) -> None:
-        self._stick, self._stick_time, self._tap = (0.0, 0.0), -math.inf, (0.0, 0.0)
+        self._stick, self._stick_time, self._tap = self._centre, -math.inf, self._centre
         self._steps = []
         self._waiting = dict.fromkeys(BUTTONS, 0)
 

@@ -37,6 +37,7 @@ class Server(Protocol):
     links: dict[str, LinkSocket]
     open: set[WebSocketHandler]
     meshcat_address: tuple[str, int]
+    index: str
 
     def welcome(self, name: str) -> str:
         """The first words to a page."""
@@ -107,7 +108,7 @@ class PageFile(_Guarded):
     """The page and its files."""
 
     def get(self, token: str, name: str) -> None:
-        path = (PAGE / (name or "index.html")).resolve()
+        path = (PAGE / (name or self.server.index)).resolve()
         if not path.is_relative_to(PAGE) or not path.is_file():
             raise HTTPError(404, reason="there is nothing here")
         kind = mimetypes.guess_type(path.name)[0] or "application/octet-stream"

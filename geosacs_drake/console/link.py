@@ -9,7 +9,19 @@ from collections.abc import Callable
 from geosacs_drake.console.bindings import BindingFiles
 from geosacs_drake.console.control import Control
 from geosacs_drake.console.mapping_choice import MappingChoice
-from geosacs_drake.console.messages import AnyMessage, Bindings, Drive, Press, Say, Seen, Step, View, in_disc
+from geosacs_drake.console.messages import (
+    AnyMessage,
+    Bindings,
+    Drive,
+    Jog,
+    Press,
+    Say,
+    Seen,
+    Step,
+    Teach,
+    View,
+    in_disc,
+)
 
 
 class Link:
@@ -82,6 +94,8 @@ class Link:
                 return self.answers.change_view(self.name, message)
             case Bindings(name=name, bindings=bindings):
                 return self.answers.keep_bindings(name, bindings)
+            case Jog() | Teach():
+                return self.answers.teach(self.name, message, age_s)
             case Say(type=word):
                 return self.answers.word(self.name, word)
         return ""
@@ -100,7 +114,7 @@ class Answers:
 
     on_word: Callable[[str, str], str] = staticmethod(lambda page, word: "")
 
-    def step_samples(self, direction: tuple[float, float], mm: float) -> list[tuple[float, float]]:
+    def step_samples(self, direction: tuple[float, float], mm: float) -> list[tuple[float, ...]]:
         """Sticks that move the point `mm` in a direction, one a sample: equal ones, as few as do.
 
         Args:
@@ -124,6 +138,16 @@ class Answers:
         if self.mapping is not None:
             self.mapping.choose(view.mapping, view.seat, view.right, view.up, follow=view.follow)
         return ""
+
+    def teach(self, page: str, message: Jog | Teach, age_s: float) -> str:
+        """A page teaches; here nothing is taught.
+
+        Args:
+            page: that asks.
+            message: what it asks for.
+            age_s: how old it is, [s].
+        """
+        return "Here the robot is steered, not taught: load this page again."
 
     def keep_bindings(self, name: str, bindings: dict) -> str:
         """A page wants the bindings of a device kept.

@@ -81,7 +81,26 @@ class Bindings(Message):
     bindings: dict[str, Any] = Field(max_length=40)
 
 
-AnyMessage = Annotated[Drive | Step | Press | Say | View | Seen | Bindings, Field(discriminator="type")]
+class Jog(Message):
+    """How the tool is moved while it is taught: velocity and the way its nose tips, in the base frame, and its spin;
+    said again while it is held, or once for a step."""
+
+    type: Literal["jog"]
+    move: Triple = (0.0, 0.0, 0.0)
+    nose: Triple = (0.0, 0.0, 0.0)
+    spin: Coordinate = 0.0
+    mm: Annotated[float, Field(gt=0, le=50, allow_inf_nan=False)] | None = None
+    """[mm] of a step; None: it is held."""
+
+
+class Teach(Message):
+    """What is to become of what is taught."""
+
+    type: Literal["teach"]
+    word: Literal["record", "pause", "undo", "back", "save", "discard", "reset", "learn", "travel"]
+
+
+AnyMessage = Annotated[Drive | Step | Press | Say | View | Seen | Bindings | Jog | Teach, Field(discriminator="type")]
 _ADAPTER: TypeAdapter[AnyMessage] = TypeAdapter(AnyMessage)
 
 

@@ -43,6 +43,7 @@ class ConsoleServer:
         host: str = "localhost",
         port: int | None = None,
         token: str | None = None,
+        index: str = "index.html",
     ) -> None:
         """Take a port; `start` serves.
 
@@ -53,12 +54,13 @@ class ConsoleServer:
             host: the address to listen at.
             port: TCP port; None takes the first free one from 7000 on, 0 any free one.
             token: of an earlier run whose page stays; None draws one.
+            index: the page's file.
 
         Raises:
             InputError: the port is taken, or the address is not this machine's.
         """
         self.control, self.answers = control, answers or Answers()
-        self.meshcat_address = meshcat_address
+        self.meshcat_address, self.index = meshcat_address, index
         self._sockets, self.port = _take_port(host, port)
         self.access = Access(token or new_token(), self.port, open_to_network=host not in ("localhost", "127.0.0.1"))
         self.links: dict[str, LinkSocket] = {}

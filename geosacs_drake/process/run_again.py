@@ -1,9 +1,10 @@
-"""Running once more: the same command in the same process and at the same address, so that open pages find it."""
+"""Running once more, or another command: in the same process and at the same address, so that open pages find it."""
 
 from __future__ import annotations
 
 import os
 import sys
+from collections.abc import Sequence
 from typing import NoReturn
 
 _ADDRESS = "GEOSACS_CONSOLE"
@@ -16,10 +17,21 @@ def run_again(port: int, token: str) -> NoReturn:
         port: of the console, which the new run takes over.
         token: of its address.
     """
+    run_instead(sys.orig_argv[1:], (port, token))
+
+
+def run_instead(arguments: Sequence[str], address: tuple[int, str] | None = None) -> NoReturn:
+    """Become another command of this project.
+
+    Args:
+        arguments: of the Python interpreter.
+        address: port and token of the console whose pages stay and connect to the new one; None: there is none.
+    """
     sys.stdout.flush()
     sys.stderr.flush()
-    os.environ[_ADDRESS] = f"{port} {token}"
-    os.execv(sys.executable, [sys.executable, *sys.orig_argv[1:]])
+    if address is not None:
+        os.environ[_ADDRESS] = f"{address[0]} {address[1]}"
+    os.execv(sys.executable, [sys.executable, *arguments])
 
 
 def earlier_address() -> tuple[int, str] | None:
