@@ -35,7 +35,7 @@ def clean_jog(jog: ArrayLike) -> np.ndarray:
     values = np.asarray(jog, dtype=float)
     if values.shape != (JOG_SIZE,) or not np.isfinite(values).all():
         return np.zeros(JOG_SIZE)
-    values = values.copy()
+    values = np.clip(values, -1e6, 1e6)
     for part in (MOVE, NOSE):
         values[part] /= max(float(np.linalg.norm(values[part])), 1.0)
     values[SPIN] = min(max(values[SPIN], -1.0), 1.0)

@@ -11,7 +11,8 @@ from diagrams.ik.kinematics import ArmKinematics
 from diagrams.teach.jog import JOG_SIZE, clean_jog, next_wanted, not_pressing, towards
 
 WEIGHT = 0.1
-"""Of the orientation. It tells only where a joint is at a stop: there 2° off cost as much as 1 mm, and the tool tilts."""
+"""Of the orientation. It tells only where a joint is at a stop: there 2° off cost as much as 1 mm, and the tool tilts.
+"""
 
 
 class ToolJog(LeafSystem):

@@ -121,7 +121,7 @@ class Console:
         """
         navigation = scenario.navigation
         self.answers.full_stick_mm = 1000 * 20.0 / navigation.delta * JOYSTICK_PERIOD
-        self.server.about = {
+        about = {
             "task": scenario.task,
             "description": scenario.description or scenario.task,
             "full_stick_mm": self.answers.full_stick_mm,
@@ -132,6 +132,7 @@ class Console:
             "base": system.station.X_WB.translation(),
             "bindings": self.answers.bindings.all(),
         }
+        self.server.introduce(about)
         return StatusReporter(
             system=system,
             canal=canal,

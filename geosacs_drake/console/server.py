@@ -106,6 +106,16 @@ class ConsoleServer:
 
     # ---- called by the run, from its thread ----
 
+    def introduce(self, about: dict[str, Any]) -> None:
+        """What does not change while it runs, for pages that are there and for those that come.
+
+        Args:
+            about: as plain data.
+        """
+        with self._lock:
+            self.about = about
+        self._from_thread({"type": "about", "about": about})
+
     def show(self, status: dict[str, Any]) -> None:
         """What the pages show from now on."""
         with self._lock:

@@ -21,6 +21,8 @@ from geosacs_drake.console.control import LATE, STALE_S, Control
 
 WORDS = {"record": Word.RECORD, "pause": Word.PAUSE, "undo": Word.UNDO, "back": Word.BACK}
 """Of a page, to the recorder."""
+MOVING = ("record", "undo", "back", "reset", "travel")
+"""After which the robot moves by itself: what comes late is not carried out."""
 REQUESTS = ("save", "discard", "reset", "learn", "travel")
 """Of a page, to the lesson."""
 
@@ -49,7 +51,7 @@ class TeachControl(Control):
         with self._lock:
             if refusal := self._refusal(page):
                 return refusal
-            if age_s > STALE_S:
+            if word in MOVING and age_s > STALE_S:
                 return LATE
             if word in WORDS:
                 self._words = [WORDS[word]]

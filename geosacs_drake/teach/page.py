@@ -12,6 +12,7 @@ from diagrams.teaching import Teaching
 from diagrams.view.canal_drawing import CanalDrawing
 from diagrams.view.canal_meshes import tube
 from geosacs_drake.console.console import open_page
+from geosacs_drake.console.mapping_choice import RIGHT_T, UP_T
 from geosacs_drake.console.server import ConsoleServer
 from geosacs_drake.process.run_again import earlier_address
 from geosacs_drake.teach.answers import TeachAnswers
@@ -81,13 +82,15 @@ class TeachPage:
         self._teaching, self._lesson = teaching, lesson
         self._reporter = TeachReporter(teaching, lesson)
         X_WB = teaching.station.X_WB
-        self.server.about = {
+        about = {
             "teaching": True,
             "description": "Teach the robot",
             "base_yaw": float(RollPitchYaw(X_WB.rotation()).yaw_angle()),
             "base": X_WB.translation(),
+            "gripper_view": {"right": RIGHT_T, "up": UP_T},
             "bindings": self.server.answers.bindings.all(),
         }
+        self.server.introduce(about)
         self._meshcat.SetTransform("taught", X_WB)
         self._canal = CanalDrawing(self._meshcat, "canal")
 

@@ -8,11 +8,13 @@ const ON = 0.5;            // of a button or an axis that is used as one
 const STRAY = 0.4;         // a stick rests nearer to its centre than this
 const CURVE = 1.5;
 const BUTTONS = ["gripper", "reverse", "start", "stop"];
+const MORE = ["lower", "raise", "mode"];
 
 // Of the browsers' standard layout, and a fair guess for the others.
 export const STANDARD = {
   right: { axis: 0, sign: 1 }, left: { axis: 0, sign: -1 }, up: { axis: 1, sign: -1 }, down: { axis: 1, sign: 1 },
   gripper: { button: 0 }, reverse: { button: 1 }, start: { button: 9 }, stop: { button: 8 },
+  lower: { button: 4 }, raise: { button: 5 }, mode: { button: 3 },
 };
 const CROSS = { up: 12, down: 13, left: 14, right: 15 };
 
@@ -24,6 +26,7 @@ export class Gamepads extends EventTarget {
     this.kept = kept;         // bindings by the device's name
     this.seen = new Map();    // what is known of each, by its number
     this.binding = null;      // gets all readings while controls are bound
+    this.more = null;         // gets what else a page has buttons for
     this.switched = null;     // gets presses while switches are scanned
     setInterval(() => this.poll(), EVERY_MS);
     stick.addEventListener("centre", () => { for (const pad of this.seen.values()) pad.quiet = true; });
@@ -59,6 +62,7 @@ export class Gamepads extends EventTarget {
   read(pad, known) {
     const bindings = this.kept.get(pad.id) ?? STANDARD;
     for (const name of BUTTONS) this.edge(known, name, value(known, bindings[name]) > ON);
+    if (this.more) for (const name of MORE) this.edge(known, name, value(known, bindings[name]) > ON);
     const pushed = { x: part(known, bindings.right, bindings.left), y: part(known, bindings.up, bindings.down) };
     const crossed = (name) => bindings === STANDARD && pad.mapping === "standard" && (known.buttons[CROSS[name]] ?? 0) > ON;
     const digital = settings.mode !== "held" || !("axis" in (bindings.right ?? bindings.up ?? {}));
@@ -86,6 +90,7 @@ export class Gamepads extends EventTarget {
     if (on) known.down.add(name);
     else known.down.delete(name);
     if (this.switched) this.switched(name, on);
+    else if (MORE.includes(name)) this.more(name, on);
     else if (on) this.press(name);
   }
 

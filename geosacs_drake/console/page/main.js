@@ -67,14 +67,18 @@ document.addEventListener("click", (event) => {
 const frame = byId("frame");
 frame.addEventListener("load", () => keys.listen(frame.contentWindow));
 
-link.addEventListener("welcome", ({ detail }) => {
-  about = detail.about;
+function meet(detail) {
+  about = detail;
   document.title = about.description ?? "GeoSACS";
   suggest({ mapping: about.mapping, seat: about.seat });
   [camera.yaw, camera.position] = [about.base_yaw ?? 0, about.base ?? [0, 0, 0]];
   for (const { device, ...bindings } of Object.values(about.bindings ?? {})) if (!kept.has(device)) kept.set(device, bindings);
   camera.look();
   tellView();
+}
+link.addEventListener("about", ({ detail }) => meet(detail.about));  // of a run that was still being built
+link.addEventListener("welcome", ({ detail }) => {
+  meet(detail.about);
   clearHistory();
   detail.history.forEach(showEvent);
   notice("");
@@ -83,6 +87,7 @@ link.addEventListener("welcome", ({ detail }) => {
   if (detail.end) showEnd(detail.end, link);
 });
 link.addEventListener("status", ({ detail }) => {
+  if (detail.teaching) location.reload();  // a lesson has a page of its own
   if (!detail.axes) {  // the robot is still being built
     document.getElementById("headline").textContent = "Getting ready";
     return;

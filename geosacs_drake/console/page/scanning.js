@@ -69,6 +69,8 @@ export class Scanning {
     if (typeof this.part === "string") {
       if (down) this.ways.push(this.part, WAYS[this.part]);
       else this.ways.release(this.part);
+    } else if ("hold" in this.part.dataset) {
+      this.part.dispatchEvent(new Event(down ? "hold" : "letgo"));
     } else if (down) {
       choose(this.part);
     }

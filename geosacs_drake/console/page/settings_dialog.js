@@ -16,10 +16,11 @@ const CHOICES = [
   ["dwell_s", "One switch waits", [[0.8, "0.8 s"], [1.5, "1.5 s"], [2.5, "2.5 s"], [4, "4 s"]]],
 ];
 
-export function openSettings(dialog) {
+// `keys` are the ones that this page has a use for; all where it does not say.
+export function openSettings(dialog, keys = CHOICES.map(([key]) => key)) {
   const title = element("h2", "", "Settings");
   title.id = "settings-title";
-  const rows = CHOICES.map(([key, words, options]) => group(key, words, options));
+  const rows = CHOICES.filter(([key]) => keys.includes(key)).map(([key, words, options]) => group(key, words, options));
   const note = element("p", "note", "With one switch, the parts of the page are lit in turn: press Space, Enter, a button of a gamepad "
     + "or anywhere to choose. With two, Space goes on and Enter chooses.");
   const close = button("Done", () => dialog.close());

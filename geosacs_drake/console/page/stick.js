@@ -46,9 +46,12 @@ export class Stick extends EventTarget {
     this.dispatchEvent(new Event("change"));
   }
 
+  get rests() {
+    return this.value[0] === 0 && this.value[1] === 0;
+  }
+
   repeat() {
-    const rests = this.value[0] === 0 && this.value[1] === 0;
-    this.silent = rests ? this.silent + 1 : 0;
+    this.silent = this.rests ? this.silent + 1 : 0;
     if (this.silent <= 3) this.send();
   }
 
@@ -63,7 +66,7 @@ export class Stick extends EventTarget {
   }
 }
 
-function turned([x, y]) {
+export function turned([x, y]) {
   return [settings.invert_x ? -x : x, settings.invert_y ? -y : y];
 }
 
