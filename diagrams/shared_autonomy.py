@@ -8,14 +8,13 @@ from pathlib import Path
 from typing import Literal
 
 import numpy as np
-from pydrake.geometry import Meshcat, MeshcatVisualizer, MeshcatVisualizerParams
+from pydrake.geometry import Meshcat
 from pydrake.systems.framework import Context, Diagram, DiagramBuilder, OutputPort
 from pydrake.systems.primitives import ZeroOrderHold
 
 from canal.navigation.joystick import JOYSTICK_PERIOD, in_step
 from canal.surface import CanalSurface
 from diagrams.announcements import Announcement, Announcer
-from diagrams.deformable.view import DeformableView
 from diagrams.force_alarm import ForceAlarm
 from diagrams.ik.joint_pace import at_joint_pace, unhurried
 from diagrams.ik.reachability import reach_report
@@ -26,6 +25,7 @@ from diagrams.navigator import CanalNavigator
 from diagrams.operator.system import SimulatedOperator
 from diagrams.run_log import RunLog
 from diagrams.scenario import Scenario
+from diagrams.scene_view import show_scene
 from diagrams.station.lio_arm import arm_speeds
 from diagrams.station.lio_ik import make_lio_solver
 from diagrams.station.lio_station import START_POSTURE, LioStation, arm_stops
@@ -273,18 +273,6 @@ def build_shared_autonomy(
         recorder,
         (slower,) if slower else (),
     )
-
-
-def show_scene(builder: DiagramBuilder, station: LioStation, meshcat: Meshcat, name: str) -> None:
-    """Draw robot, fixtures and items; `name` is `view` or `recording`."""
-    query = station.GetOutputPort("geometry_query")
-    visualizer = builder.AddNamedSystem(f"scene_{name}", MeshcatVisualizer(meshcat, MeshcatVisualizerParams()))
-    builder.Connect(query, visualizer.query_object_input_port())
-    deformable = station.scene.deformable_items
-    if deformable:
-        deformable_view = DeformableView(items=deformable, meshcat=meshcat, recording=name == "recording")
-        view = builder.AddNamedSystem(f"deformable_{name}", deformable_view)
-        builder.Connect(query, view.GetInputPort("query_object"))
 
 
 MEASURED = ("X_BT", "gripper_state", "contact_forces", "hand_force", "touching_bodies")

@@ -15,7 +15,7 @@ from diagrams.force_alarm import ForceAlarm
 from diagrams.ik.solver import IkSolver
 from diagrams.ik.system import OrientationWeightedIk
 from diagrams.scenario import Scenario
-from diagrams.shared_autonomy import show_scene
+from diagrams.scene_view import show_scene
 from diagrams.station.lio_ik import make_lio_solver
 from diagrams.station.lio_station import START_POSTURE, LioStation
 from diagrams.teach.live_jog import LiveJog, TeachSample
@@ -25,7 +25,18 @@ from diagrams.teach.tool_jog import ToolJog
 
 @dataclass(frozen=True)
 class Teaching:
-    """The diagram of a lesson, and the systems in it that one asks about."""
+    """The diagram of a lesson, and the systems in it that one asks about.
+
+    Attributes:
+        diagram: the whole.
+        station: the robot among fixtures and items.
+        solver: of the inverse kinematics.
+        hand: what the person does.
+        jog: from it to a wanted pose.
+        ik: from that to a joint command.
+        alarm: whether the robot presses on something.
+        recorder: of the path, and the way back.
+    """
 
     diagram: Diagram
     station: LioStation
@@ -45,7 +56,7 @@ def build_teaching(
     seed: int = 0,
     meshcat: Meshcat | None = None,
 ) -> Teaching:
-    """Wire a scenario's robot and things to a hand that teaches.
+    """Wire a scenario's robot and items to a hand that teaches.
 
     ```
     hand → jog → orientation-weighted IK → Lio station → recorder → way back
@@ -57,11 +68,11 @@ def build_teaching(
         scenario: what stands where.
         read: gives the hand's latest sample, and never waits.
         q_start: posture at the start, [rad]. Shape (6,).
-        seed: of where the things lie.
+        seed: of where the items lie.
         meshcat: where to show it; None for no pictures.
 
     Raises:
-        InputError: the scenario's things overlap.
+        InputError: the scenario's fixtures and items overlap.
     """
     period = in_step(1.0 / scenario.control_rate_hz)
     builder = DiagramBuilder()

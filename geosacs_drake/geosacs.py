@@ -27,13 +27,20 @@ def _learn(arguments: list[str], prog: str) -> NoReturn:
     command(arguments, prog)
 
 
+def _teach(arguments: list[str], prog: str) -> NoReturn:
+    from geosacs_drake.teach.run import main
+
+    main(arguments, prog)
+
+
 # Each imports what it needs: Drake takes two seconds.
 COMMANDS: dict[str, tuple[str, Callable[[list[str], str], NoReturn]]] = {
     "run-laundry": ("load a washing machine", _run("laundry")),
     "run-relocation": ("move an apple, a cup and a cube from table to table", _run("relocation")),
+    "run-teach": ("record demonstrations in the simulation, learn the canal, travel it", _teach),
     "learn": ("demonstrations in, a canal out", _learn),
 }
-"""By name: what it does, and how it starts. `run laundry` is `run-laundry`."""
+"""By name: what it does, and how it starts. `run laundry` is `run-laundry`, and so is `laundry`."""
 
 
 def main(arguments: Sequence[str] | None = None) -> NoReturn:
@@ -42,6 +49,8 @@ def main(arguments: Sequence[str] | None = None) -> NoReturn:
     if words[:1] == ["run"] and "-".join(words[:2]) in COMMANDS:
         words = [f"run-{words[1]}", *words[2:]]
     name = words[0].replace("_", "-") if words else ""
+    if f"run-{name}" in COMMANDS:
+        name = f"run-{name}"
     if name in COMMANDS:
         COMMANDS[name][1](words[1:], f"{PROG} {name}")
     end(lambda: _help(words), PROG)

@@ -50,6 +50,7 @@ class Control:
     axes: int = 2
     """Of the stick."""
     clock: Callable[[], float] = time.monotonic
+    """[s]"""
     _lock: threading.Lock = field(default_factory=threading.Lock)
 
     def __post_init__(self) -> None:
@@ -228,3 +229,4 @@ class Control:
 
 OTHERS = "Another page is in control: press Take control first."
 LATE = "That press came too late and was not carried out: press again."
+"""What a page is told whose command is not carried out."""

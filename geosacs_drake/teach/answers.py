@@ -15,6 +15,7 @@ class TeachAnswers(Answers):
     """Hands jogs and words on to the control."""
 
     full_stick_mm = 1000 * SPEED * JOYSTICK_PERIOD
+    """What a full jog moves in one sample of 20 Hz [mm]."""
 
     def __init__(self, control: TeachControl) -> None:
         """Answers for `control`."""

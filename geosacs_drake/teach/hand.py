@@ -32,6 +32,7 @@ class TeachControl(Control):
     """The latest jog of the pages, as `Control` has the latest stick; and what they ask the lesson for."""
 
     axes: int = JOG_SIZE
+    """Of a jog."""
 
     def __post_init__(self) -> None:
         super().__post_init__()
@@ -101,20 +102,20 @@ class ScriptedHand:
             for step in steps
             for k in range(max(1, round(step.seconds / JOYSTICK_PERIOD)))
         ]
-        self._place = 0
+        self._next = 0
         self._requests: list[str] = []
 
     @property
     def done(self) -> bool:
         """Whether all its steps were taken."""
-        return self._place >= len(self._samples)
+        return self._next >= len(self._samples)
 
     def jog_sample(self) -> TeachSample:
         """What it does at the next sample of 20 Hz."""
         if self.done:
             return TeachSample()
-        jog, say = self._samples[self._place]
-        self._place += 1
+        jog, say = self._samples[self._next]
+        self._next += 1
         if say in REQUESTS:
             self._requests.append(say)
         return TeachSample(jog, say == "gripper", WORDS.get(say, Word.NOTHING))

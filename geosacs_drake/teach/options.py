@@ -20,7 +20,7 @@ class TeachOptions:
     items: Literal["soft", "rigid"] | None = None
     """Soft clothes (finite elements) or rigid bodies. Default: as the scenario says."""
     seed: Annotated[int, Field(ge=0, lt=2**63)] = 0
-    """Draws where things lie."""
+    """Draws where items lie."""
     realtime_rate: Annotated[float, Field(ge=0, lt=1e6)] | None = None
     """Simulated over real time; 0 for as fast as possible. Default: 1 in a browser, 0 headless."""
     port: int | None = None

@@ -63,8 +63,8 @@ class TeachPage:
         return self.server.address
 
     @property
-    def place(self) -> tuple[int, str]:
-        """Port and token."""
+    def port_and_token(self) -> tuple[int, str]:
+        """Of the server, for who comes after it."""
         return self.server.port, self.server.access.token
 
     def open_browser(self) -> None:

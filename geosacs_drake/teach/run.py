@@ -18,7 +18,7 @@ from diagrams.scenario import load_scenario, with_items
 from diagrams.scene.layout import base_pose
 from diagrams.station.lio_ik import make_lio_solver
 from diagrams.station.lio_station import START_POSTURE
-from diagrams.station.sleep import rest_of
+from diagrams.station.sleep import sleep_manager
 from diagrams.teaching import Teaching, build_teaching
 from diagrams.view.meshcat_page import leave, start_meshcat
 from geosacs_drake.prepare_canal import prepare_canal
@@ -79,7 +79,7 @@ def run(options: TeachOptions, prog: str = PROG) -> ExitStatus:
         if page is not None:
             page.close()
         if going.travel:
-            run_instead(going.travel, None if page is None else page.place)
+            run_instead(going.travel, None if page is None else page.port_and_token)
         leave(status, meshcat, at_once=page is not None)
 
 
@@ -102,7 +102,7 @@ def _go(going: _Going, interrupts: Interrupts) -> ExitStatus:
     teaching, page = going.teaching, going.page
     simulator = Simulator(teaching.diagram)
     simulator.set_target_realtime_rate(going.rate)
-    simulator.set_monitor(rest_of(teaching.station))
+    simulator.set_monitor(sleep_manager(teaching.station))
     simulator.Initialize()
     root = simulator.get_mutable_context()
     beginning = root.Clone()

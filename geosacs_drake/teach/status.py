@@ -49,7 +49,7 @@ def describe(path: TaughtPath, lesson: Lesson, *, stopped: bool, presses: bool, 
     if saved == 0:
         return (
             "Move to where it begins",
-            "Bring the gripper to the things that are picked up. Then press Record.",
+            "Bring the gripper to what is picked up. Then press Record.",
             "ready",
         )
     if saved == 1:

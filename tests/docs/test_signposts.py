@@ -7,6 +7,7 @@ import pytest
 
 from geosacs_drake.learn_options import LearnOptions
 from geosacs_drake.run_options import RunOptions
+from geosacs_drake.teach.options import TeachOptions
 
 ROOT = Path(__file__).parents[2]
 PAGES = sorted(
@@ -29,6 +30,7 @@ def test_named_paths_exist(page):
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: page.relative_to(ROOT).as_posix())
 def test_named_options_exist(page):
     fields = set(RunOptions.__dataclass_fields__) | set(LearnOptions.__dataclass_fields__)
+    fields |= set(TeachOptions.__dataclass_fields__)
     for command in (LearnOptions.__dataclass_fields__["recorded"], LearnOptions.__dataclass_fields__["learning"]):
         fields |= set(type(command.default).__dataclass_fields__)
     fields |= {f"no_{name}" for name in fields} | {"list", "only", "quick", "seconds", "seeds"}

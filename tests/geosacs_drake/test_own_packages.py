@@ -54,7 +54,8 @@ def test_the_console_script_starts_the_same_commands(folder, tmp_path_factory):
     for words, status, says in (
         (["run", "laundry", "--headless", "--duration", "0"], 2, "geosacs run-laundry: --duration"),
         (["run-relocation", "--seed", "-1"], 2, "geosacs run-relocation: --seed"),
-        (["dance"], 2, "geosacs: there is no command 'dance'; use run-laundry, run-relocation, learn"),
+        (["teach", "--headless"], 2, "geosacs run-teach: --headless needs a hand: give --script"),
+        (["dance"], 2, "geosacs: there is no command 'dance'; use run-laundry, run-relocation, run-teach, learn"),
     ):
         done = run(folder, script, *words)
         assert done.returncode == status
