@@ -148,6 +148,16 @@ class CanalSurface:
         """Mean TCP orientation at a continuous disk, unit (w, x, y, z). Shape (4,)."""
         return np.array(self._lookup.orientation(disk))
 
+    def pose(self, disk: float, eta: float = 0.0, phi: float = 0.0) -> np.ndarray:
+        """Pose of the TCP at a point of the canal: position [m], then the disk's mean orientation. Shape (7,).
+
+        Args:
+            disk: continuous index.
+            eta: ratio η in [0, 1].
+            phi: φ, [rad].
+        """
+        return np.array((*self._lookup.point(disk, eta, phi), *self._lookup.orientation(disk)))
+
     def weight(self, disk: float) -> float:
         """Orientation weight w_o at a continuous disk."""
         return self._lookup.weight(disk)

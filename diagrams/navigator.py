@@ -116,10 +116,7 @@ class CanalNavigator(LeafSystem):
 
     def _calc_pose(self, context: Context, output: BasicVector) -> None:
         disk, eta, phi = context.get_discrete_state(0).value()[:3].tolist()
-        pose = np.empty(7)
-        pose[:3] = self._canal.point(disk, eta, phi)
-        pose[3:] = self._canal.orientation(disk)
-        output.set_value(pose)
+        output.set_value(self._canal.pose(disk, eta, phi))
 
     def _calc_weight(self, context: Context, output: BasicVector) -> None:
         output.SetAtIndex(0, self._canal.weight(context.get_discrete_state(0).value().item(DISK)))

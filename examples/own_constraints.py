@@ -14,7 +14,6 @@ from matplotlib.figure import Figure
 from canal.demonstration import load_demonstration
 from canal.learning import learn_canal
 from diagrams.ik.solver import IkSolver
-from diagrams.ik.start_posture import disk_pose
 from diagrams.station.lio_arm import TCP_FRAME, make_arm_plant
 from models import MODELS
 
@@ -35,7 +34,7 @@ def travel(ik: IkSolver) -> tuple[np.ndarray, float]:
     """Postures (T, 6) [rad] from home to place and on to pick, and the largest miss [m]."""
     q, v, postures, missed = HOME, np.zeros(6), [], 0.0
     for disk in way:
-        result = ik.solve(disk_pose(canal, disk), ORIENTATION_WEIGHT, q, DT, v)
+        result = ik.solve(canal.pose(disk), ORIENTATION_WEIGHT, q, DT, v)
         q, v = result.q, (result.q - q) / DT
         postures.append(q)
         missed = max(missed, result.position_error)

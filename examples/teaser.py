@@ -12,7 +12,6 @@ from style import BLUE, GREEN, RED, SKY, YELLOW, new_figure, save, shipped_canal
 
 from canal.surface import CanalSurface
 from diagrams.ik.solver import IkSolver
-from diagrams.ik.start_posture import disk_pose
 from diagrams.scenario import load_scenario, with_items
 from diagrams.station.lio_arm import TCP_FRAME, make_arm_plant
 from diagrams.station.lio_station import START_POSTURE, LioStation
@@ -25,7 +24,7 @@ canal: CanalSurface = shipped_canal("laundry")
 solver, q, v = IkSolver(make_arm_plant(), TCP_FRAME), START_POSTURE, np.zeros(6)
 for disk in np.linspace(canal.home_disk, DISK, 60):
     for _ in range(4):
-        q = solver.solve(disk_pose(canal, disk, ETA * (disk == DISK), PHI), 10.0, q, 0.1, v).q
+        q = solver.solve(canal.pose(disk, ETA * (disk == DISK), PHI), 10.0, q, 0.1, v).q
 
 builder = DiagramBuilder()
 station = LioStation.AddToBuilder(

@@ -14,7 +14,7 @@ from benchmarks.fuzz.options import random_options
 from canal.learning import learn_canal
 from canal.learning_options import LearningOptions
 from canal.navigation import NavigationOptions, NavigationState, disks_per_second, initial_state, step
-from canal.navigation.joystick import JOYSTICK_SIZE
+from canal.navigation.joystick import JOYSTICK_SIZE, clean_joystick
 from canal.support_planes import SupportPlane
 from canal.surface import CanalSurface
 
@@ -70,7 +70,7 @@ class Hand:
                 self._buttons[k] = 1.0 - self._buttons[k]
         if self._now(1.0):
             self.moving = not self.moving
-        return np.concatenate([self._stick, self._buttons])
+        return clean_joystick(np.concatenate([self._stick, self._buttons]))
 
     def contact(self) -> dict[str, Any]:
         """Force and alarm of this step, as `step` takes them."""
@@ -144,7 +144,7 @@ def check(
     if not after.running:
         assert np.array_equal(p, q), "moves while stopped"
         return
-    stick = min(1.0, math.hypot(*np.nan_to_num(joystick[:2], posinf=0.0, neginf=0.0)))
+    stick = math.hypot(*joystick[:2])
     if after.correcting:
         assert after.disk == before.disk, "travels while corrected"
         assert np.linalg.norm(q - p) <= 20.0 / options.delta * dt * stick * (1 + 1e-6) + TINY, "corrects too fast"

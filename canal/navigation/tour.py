@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from canal.navigation.joystick import JOYSTICK_SIZE
+from canal.navigation.joystick import GRIPPER, JOYSTICK_SIZE, START, in_unit_disc
 from canal.navigation.travel import NavigationOptions, initial_state, step
 from canal.surface import CanalSurface
 
@@ -78,7 +78,7 @@ def tour(
     pending = sorted(pushes, key=lambda push: push.start)
     state = initial_state(canal)
     joystick = np.zeros(JOYSTICK_SIZE)
-    joystick[4] = 1.0
+    joystick[START] = 1.0
     state = step(canal, state, joystick, 0.0, options=options)
     way, left, rows = 0.0, 0.0, []
     dt = 1.0 / RATE_HZ
@@ -88,7 +88,7 @@ def tour(
             push = pending.pop(0)
             left, stick = push.duration, push.stick
         if left > 0:
-            joystick[:2] = stick
+            joystick[:GRIPPER] = in_unit_disc(*stick)
             left -= dt
         else:
             way += dt

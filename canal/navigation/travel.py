@@ -48,7 +48,7 @@ def step(
     force: Sequence[float] = (0.0, 0.0, 0.0),
     options: NavigationOptions | None = None,
 ) -> NavigationState:
-    """One step of `dt` seconds under a joystick vector (see `joystick`); a value that is not finite counts as 0.
+    """One step of `dt` seconds under a clean joystick vector (see `canal.navigation.joystick`).
 
     While the stick is off centre s stands still and the point moves on its disk by (k_x x_s + k_y y_s)·20/δ·dt,
     saturated at r(s) (paper V-D). Else the point goes along the canal by the leg's ratio strategy. While an alarm
@@ -57,7 +57,7 @@ def step(
     Args:
         canal: that is travelled.
         state: before the step.
-        joystick: as it was during the step. Shape (6,).
+        joystick: as it was during the step, clean. Shape (6,).
         dt: duration of the step [s].
         gripper_moving: whether the fingers are on their way.
         alarm: force of the contact whose force is above its limit [N]; 0 for none.
@@ -68,9 +68,9 @@ def step(
         The state after the step.
     """
     options = options or NavigationOptions()
-    k_x, k_y, *levels = (v if math.isfinite(v) else 0.0 for v in np.asarray(joystick, dtype=float).tolist())
+    k_x, k_y, *levels = np.asarray(joystick, dtype=float).tolist()
     state = feel(canal, state, (k_x, k_y), alarm, force)
-    state = press_buttons(canal, state, tuple(level > 0.5 for level in levels), bool(k_x or k_y), options)
+    state = press_buttons(canal, state, tuple(map(bool, levels)), bool(k_x or k_y), options)
     if state.blocked:
         state = replace(state, blocked=0.0)
     if not state.running:
@@ -98,7 +98,7 @@ def _correct(
 ) -> NavigationState:
     """Move the point on its disk, saturated at the disk's edge (paper IV-D, V-D)."""
     k_x, k_y = cut_stick(canal, state, stick)
-    scale = 20.0 / options.delta * dt / max(math.hypot(*stick), 1.0)
+    scale = 20.0 / options.delta * dt
     p = canal.point(state.disk, state.eta, state.phi)
     x, y = canal.axes(state.disk)
     eta, phi, moved = _on_disk(canal, state, p, scale * (k_x * x + k_y * y))

@@ -9,7 +9,7 @@ from diagrams.ik.options import CollisionAvoidanceOptions, IkOptions, IkStatus
 from diagrams.ik.program import StepProgram
 from diagrams.ik.reachability import ReachReport, reach_report
 from diagrams.ik.solver import IkSolver
-from diagrams.ik.start_posture import StartPosture, disk_pose, find_start_posture
+from diagrams.ik.start_posture import StartPosture, find_start_posture
 from diagrams.ik.system import IkStatusField, OrientationWeightedIk
 from diagrams.ik.target import wanted_pose
 
@@ -24,7 +24,6 @@ __all__ = [
     "StartPosture",
     "StepProgram",
     "at_joint_pace",
-    "disk_pose",
     "find_start_posture",
     "reach_report",
     "unhurried",

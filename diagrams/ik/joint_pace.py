@@ -10,7 +10,7 @@ import numpy as np
 from canal.navigation import NavigationOptions
 from canal.surface import CanalSurface
 from diagrams.ik.solver import IkSolver
-from diagrams.ik.start_posture import StartPosture, disk_pose
+from diagrams.ik.start_posture import StartPosture
 
 UNHURRIED = 0.1
 """[m/s] No joint of the Lio comes near its limit when its tool goes along a canal that it reaches at this speed: the
@@ -88,7 +88,7 @@ def _along_rim(
     path, reached = np.empty((len(disks), solver.n)), np.empty(len(disks), dtype=bool)
     for k, disk in enumerate(disks.tolist()):
         for _ in range(3 if k == 0 else 1):
-            result = solver.solve(disk_pose(canal, disk, 1.0, phi), canal.weight(disk), q, _WIDE)
+            result = solver.solve(canal.pose(disk, 1.0, phi), canal.weight(disk), q, _WIDE)
             q = result.q
         path[k], reached[k] = q, result.position_error <= REACHED
     return path, reached

@@ -11,7 +11,6 @@ from diagrams.ik.solver import IkSolver
 from diagrams.ik.start_posture import (
     POSITION_TOLERANCE,
     StartPosture,
-    disk_pose,
     find_start_posture,
     orientation_tolerance,
 )
@@ -108,12 +107,12 @@ def reach_report(
     center_reached = np.empty(len(disks), dtype=bool)
     for row, disk in enumerate(disks.tolist()):
         limit, weight = float(tolerance[disk]), float(canal.orientation_weights[disk])
-        q_center, *center = _reach(solver, disk_pose(canal, disk), weight, start.path[disk], limit)
+        q_center, *center = _reach(solver, canal.pose(disk), weight, start.path[disk], limit)
         center_reached[row] = _counts(np.array(center), limit)
         for spoke, phi in enumerate(phis):
             q = q_center
             for ring, eta in enumerate(etas):
-                pose = disk_pose(canal, disk, float(eta), float(phi))
+                pose = canal.pose(disk, float(eta), float(phi))
                 q, *errors[row, ring, spoke] = _reach(solver, pose, weight, q, limit)
                 postures[row, ring, spoke] = q
         if progress is not None:

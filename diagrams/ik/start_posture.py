@@ -144,7 +144,7 @@ def follow(solver: IkSolver, canal: CanalSurface, q_home: np.ndarray, *, rim: bo
     for disks in (range(home, n_disks), range(home, -1, -1)):
         q, v = q_home, np.zeros(solver.n)
         for disk in disks:
-            result = solver.solve(disk_pose(canal, disk), float(canal.orientation_weights[disk]), q, dt, v)
+            result = solver.solve(canal.pose(disk), float(canal.orientation_weights[disk]), q, dt, v)
             v = (result.q - q) / dt
             q = path[disk] = result.q
             errors[disk] = result.position_error, result.orientation_error
@@ -165,18 +165,6 @@ def follow(solver: IkSolver, canal: CanalSurface, q_home: np.ndarray, *, rim: bo
     )
 
 
-def disk_pose(canal: CanalSurface, disk: float, eta: float = 0.0, phi: float = 0.0) -> np.ndarray:
-    """Pose vector (7,) of a point of the canal, with the disk's mean orientation.
-
-    Args:
-        canal: in the robot's base frame.
-        disk: continuous index.
-        eta: ratio η in [0, 1].
-        phi: φ, [rad].
-    """
-    return np.concatenate((canal.point(disk, eta, phi), canal.orientation(disk)))
-
-
 def _postures_at_home(solver: IkSolver, canal: CanalSurface, seed: int) -> list[np.ndarray]:
     """Postures at home of all branches that random starts find, there and at other disks, from where they walk home."""
     rng = np.random.default_rng(seed)
@@ -188,14 +176,14 @@ def _postures_at_home(solver: IkSolver, canal: CanalSurface, seed: int) -> list[
     for disk in disks:
         here: list[np.ndarray] = []
         for start in rng.uniform(low, high, size=(_RANDOM_STARTS, solver.n)):
-            q = _settle(solver, disk_pose(canal, disk), start, float(canal.orientation_weights[disk]))
+            q = _settle(solver, canal.pose(disk), start, float(canal.orientation_weights[disk]))
             if q is not None:
                 _add(here, q)
         way = np.arange(disk, home, 4 if disk < home else -4).tolist() if disk != home else []
         for q in here:
             for stop in [*way, home]:
-                q = solver.solve(disk_pose(canal, stop), float(canal.orientation_weights[stop]), q, _WIDE).q
-            settled = _settle(solver, disk_pose(canal, home), q, float(canal.orientation_weights[home]))
+                q = solver.solve(canal.pose(stop), float(canal.orientation_weights[stop]), q, _WIDE).q
+            settled = _settle(solver, canal.pose(home), q, float(canal.orientation_weights[home]))
             if settled is not None:
                 _add(found, settled)
     return found
@@ -223,7 +211,7 @@ def _rim_share(solver: IkSolver, canal: CanalSurface, path: np.ndarray) -> float
     met = []
     for disk in np.linspace(0, canal.n_disks - 1, _RIM_DISKS).astype(int):
         for phi in np.arange(_RIM_SPOKES) * (2.0 * math.pi / _RIM_SPOKES):
-            pose, q = disk_pose(canal, float(disk), 1.0, phi), path[disk]
+            pose, q = canal.pose(float(disk), 1.0, phi), path[disk]
             for _ in range(2):
                 result = solver.solve(pose, float(canal.orientation_weights[disk]), q, _WIDE)
                 q = result.q

@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from canal.errors import InputError
-from canal.navigation.joystick import JOYSTICK_SIZE
+from canal.navigation.joystick import JOYSTICK_SIZE, clean_joystick
 from canal.reading import as_numbers, read_csv, read_npz
 
 CSV_HEADER = ("t", "k_x", "k_y", "gripper", "reverse", "start", "stop")
@@ -60,7 +60,7 @@ class JoystickRecording:
                 row = int(np.argmax(bad))
                 raise InputError(f"{self.name}: row {row + 1} has {what} that cannot be used: {remedy}")
         object.__setattr__(self, "time", time)
-        object.__setattr__(self, "joystick", joystick)
+        object.__setattr__(self, "joystick", np.array([clean_joystick(row) for row in joystick]))
         object.__setattr__(self, "person_in_charge", person)
 
     def at(self, time: float) -> np.ndarray:

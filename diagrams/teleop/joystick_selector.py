@@ -2,25 +2,11 @@
 
 from __future__ import annotations
 
-import math
-
 import numpy as np
 from pydrake.systems.framework import BasicVector, Context, DiagramBuilder, DiscreteValues, LeafSystem, OutputPort
 
 from canal.navigation.joystick import JOYSTICK_PERIOD, JOYSTICK_SIZE
 from diagrams.teleop.joystick_recording import JoystickRecording
-
-
-def clean_joystick(values: np.ndarray) -> np.ndarray:
-    """A joystick vector as promised, from whatever a device gave: not finite becomes 0, the stick within the unit
-    disc, buttons 0 or 1. Shape (6,) to (6,).
-    """
-    k_x, k_y, *levels = (v if math.isfinite(v) else 0.0 for v in np.asarray(values, dtype=float).tolist())
-    k_x, k_y = (min(max(k, -1.0), 1.0) for k in (k_x, k_y))
-    norm = math.hypot(k_x, k_y)
-    if norm > 1 + 1e-9:  # the margin makes cleaning twice the same as once, bit for bit
-        k_x, k_y = k_x / norm, k_y / norm
-    return np.array((k_x, k_y, *(float(level > 0.5) for level in levels)))
 
 
 def is_touched(joystick: np.ndarray) -> bool:
@@ -148,7 +134,8 @@ class JoystickSelector(LeafSystem):
     def _person_joystick(self, context: Context) -> np.ndarray:
         if not self._person.HasValue(context):
             return np.zeros(JOYSTICK_SIZE)
-        return clean_joystick(self._person.Eval(context))
+        joystick: np.ndarray = self._person.Eval(context)
+        return joystick
 
     def _in_charge(self, context: Context) -> bool:
         if self._said.HasValue(context):
@@ -164,7 +151,7 @@ class JoystickSelector(LeafSystem):
         if self._in_charge(context):
             output.set_value(self._person_joystick(context))
         elif self._simulated.HasValue(context):
-            output.set_value(clean_joystick(self._simulated.Eval(context)))
+            output.set_value(self._simulated.Eval(context))
         else:
             output.set_value(np.zeros(JOYSTICK_SIZE))
 

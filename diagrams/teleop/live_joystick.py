@@ -8,13 +8,12 @@ from dataclasses import dataclass
 import numpy as np
 from pydrake.systems.framework import Context, DiagramBuilder, DiscreteValues, LeafSystem
 
-from canal.navigation.joystick import JOYSTICK_PERIOD, JOYSTICK_SIZE
-from diagrams.teleop.joystick_selector import clean_joystick
+from canal.navigation.joystick import JOYSTICK_PERIOD, JOYSTICK_SIZE, clean_joystick
 
 
 @dataclass(frozen=True)
 class LiveSample:
-    """What a joystick is at one moment.
+    """What a joystick is at one moment; whatever numbers a device gives, the vector is clean.
 
     Attributes:
         joystick: the joystick vector (`canal.navigation.joystick`). Shape (6,).
@@ -23,6 +22,9 @@ class LiveSample:
 
     joystick: np.ndarray
     in_charge: bool
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "joystick", clean_joystick(self.joystick))
 
 
 class LiveJoystick(LeafSystem):
@@ -57,5 +59,5 @@ class LiveJoystick(LeafSystem):
 
     def _sample(self, context: Context, discrete: DiscreteValues) -> None:
         sample = self._read()
-        discrete.set_value(0, clean_joystick(sample.joystick))
+        discrete.set_value(0, sample.joystick)
         discrete.set_value(1, [float(sample.in_charge)])

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -9,8 +10,17 @@ import numpy as np
 from pydrake.geometry import Meshcat
 from pydrake.systems.framework import Context, DiagramBuilder, DiscreteValues, LeafSystem
 
-from canal.navigation.joystick import GRIPPER, JOYSTICK_PERIOD, JOYSTICK_SIZE, K_X, K_Y, REVERSE, START, STOP
-from diagrams.teleop.joystick_selector import clean_joystick
+from canal.navigation.joystick import (
+    GRIPPER,
+    JOYSTICK_PERIOD,
+    JOYSTICK_SIZE,
+    K_X,
+    K_Y,
+    REVERSE,
+    START,
+    STOP,
+    clean_joystick,
+)
 
 
 @dataclass(frozen=True)
@@ -57,7 +67,7 @@ The same as buttons and sliders under "Open Controls". Click into the picture fi
 def read_gamepad(axes: Sequence[float], buttons: Sequence[float], dead_zone: float) -> np.ndarray:
     """Joystick vector of a gamepad in the browsers' standard mapping (left stick, its y pointing down).
 
-    The dead zone is round and the stick starts from 0 at its edge; whatever is not finite or missing counts as 0.
+    The dead zone is round and the stick starts from 0 at its edge; a stick that is not finite or missing is centred.
 
     Args:
         axes: of the device, in [-1, 1].
@@ -65,15 +75,14 @@ def read_gamepad(axes: Sequence[float], buttons: Sequence[float], dead_zone: flo
         dead_zone: length of the stick below which it rests, in [0, 1).
     """
     joystick = np.zeros(JOYSTICK_SIZE)
-    if len(axes) >= 2:
-        joystick[K_X], joystick[K_Y] = axes[0], -axes[1]
     for button, index in PAD_BUTTONS:
         if button < len(buttons):
-            joystick[index] = buttons[button] if np.isfinite(buttons[button]) else 0.0
-    joystick = clean_joystick(joystick)
-    norm = float(np.hypot(joystick[K_X], joystick[K_Y]))
-    beyond = max(0.0, norm - dead_zone) / (1.0 - dead_zone)
-    joystick[:GRIPPER] *= beyond / norm if norm > 0 else 0.0
+            joystick[index] = float(buttons[button] > 0.5)
+    x, y = axes[:2] if len(axes) >= 2 else (0.0, 0.0)
+    norm = math.hypot(x, y)
+    if dead_zone < norm < math.inf:
+        beyond = (min(norm, 1.0) - dead_zone) / (1.0 - dead_zone)
+        joystick[K_X], joystick[K_Y] = beyond * (x / norm), -beyond * (y / norm)
     return joystick
 
 

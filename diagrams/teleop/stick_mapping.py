@@ -9,9 +9,8 @@ import numpy as np
 from pydrake.systems.framework import BasicVector, Context, DiagramBuilder, DiscreteValues, LeafSystem, OutputPort
 
 from canal.navigation import FIELD_NAMES
-from canal.navigation.joystick import GRIPPER, JOYSTICK_PERIOD, JOYSTICK_SIZE
+from canal.navigation.joystick import GRIPPER, JOYSTICK_PERIOD, JOYSTICK_SIZE, in_unit_disc
 from canal.surface import CanalSurface
-from diagrams.teleop.joystick_selector import clean_joystick
 
 DISK = FIELD_NAMES.index("disk")
 SMALLEST = 0.1
@@ -115,10 +114,10 @@ class StickMapping(LeafSystem):
         output.set_value(self._matrix(context).ravel())
 
     def _calc_joystick(self, context: Context, output: BasicVector) -> None:
-        joystick = clean_joystick(self._joystick.Eval(context))
-        if joystick[:GRIPPER].any():
-            joystick[:GRIPPER] = self._matrix(context) @ joystick[:GRIPPER]
-        output.set_value(clean_joystick(joystick))
+        joystick = self._joystick.Eval(context).copy()
+        if joystick[:GRIPPER].any():  # the matrix is no rotation: what it gives may be longer than the stick
+            joystick[:GRIPPER] = in_unit_disc(*(self._matrix(context) @ joystick[:GRIPPER]).tolist())
+        output.set_value(joystick)
 
 
 def hand_for(matrix: np.ndarray, stick: np.ndarray) -> np.ndarray:

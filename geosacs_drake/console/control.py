@@ -11,7 +11,6 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from canal.navigation.joystick import GRIPPER, JOYSTICK_SIZE, REVERSE, START, STOP
-from diagrams.teleop.joystick_selector import clean_joystick
 from diagrams.teleop.live_joystick import LiveSample
 
 STALE_S = 0.150
@@ -72,7 +71,7 @@ class Control:
 
         Args:
             page: that asks.
-            stick: right and up, in the unit disc; or as many axes as it has.
+            stick: right and up; or as many axes as it has.
             age_s: how old the command is, [s].
         """
         with self._lock:
@@ -180,8 +179,9 @@ class Control:
             joystick[:GRIPPER], pressed = self._take_sample()
             for button, index in BUTTONS.items():
                 joystick[index] = float(button in pressed)
-            self._sampled = clean_joystick(joystick)
-            return LiveSample(self._sampled, self._person)
+            sample = LiveSample(joystick, self._person)
+            self._sampled = sample.joystick
+            return sample
 
     @property
     def sampled(self) -> np.ndarray:

@@ -20,7 +20,6 @@ from geosacs_drake.console.messages import (
     Step,
     Teach,
     View,
-    in_disc,
 )
 
 
@@ -73,11 +72,11 @@ class Link:
         control = self.control
         match message:
             case Drive(stick=stick):
-                return control.drive(self.name, in_disc(stick), age_s)
+                return control.drive(self.name, stick, age_s)
             case Press(button=button):
                 return control.press(self.name, button, age_s)
             case Step(direction=direction, mm=mm):
-                return control.step(self.name, self.answers.step_samples(in_disc(direction), mm), age_s)
+                return control.step(self.name, self.answers.step_samples(direction, mm), age_s)
             case Say(type="take"):
                 return control.take(self.name)
             case Say(type="hand_back"):

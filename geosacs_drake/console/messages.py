@@ -1,8 +1,7 @@
-"""What a page may say: numbered, small, checked; a stick is clamped, whatever else does not fit is refused."""
+"""What a page may say: numbered, small, checked; what does not fit is refused."""
 
 from __future__ import annotations
 
-import math
 from typing import Annotated, Any, Literal
 
 from pydantic import BaseModel, ConfigDict, Field, TypeAdapter, ValidationError
@@ -126,10 +125,3 @@ def read_message(text: str | bytes, last: int) -> AnyMessage:
     if message.n <= last:
         raise ValueError(f"n is {message.n} after {last}: count up")
     return message
-
-
-def in_disc(stick: Pair) -> Pair:
-    """The stick within the unit disc."""
-    x, y = (min(max(k, -1.0), 1.0) for k in stick)
-    norm = max(math.hypot(x, y), 1.0)
-    return x / norm, y / norm

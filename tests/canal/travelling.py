@@ -4,13 +4,14 @@ import numpy as np
 
 from canal.demonstration import Demonstration
 from canal.navigation import step
+from canal.navigation.joystick import in_unit_disc
 
 REST = np.zeros(6)
 GRIPPER, REVERSE, START, STOP = np.eye(6)[2:]
 
 
 def stick(k_x: float, k_y: float) -> np.ndarray:
-    return np.array([k_x, k_y, 0, 0, 0, 0])
+    return np.array([*in_unit_disc(k_x, k_y), 0, 0, 0, 0])
 
 
 def arch(side: float) -> Demonstration:

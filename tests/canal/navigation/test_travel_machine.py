@@ -10,6 +10,7 @@ from hypothesis import strategies as st
 from hypothesis.stateful import RuleBasedStateMachine, initialize, precondition, rule
 
 from canal.navigation import NavigationOptions, disks_per_second, initial_state, step
+from canal.navigation.joystick import in_unit_disc
 from canal.navigation.pressing import GLANCING
 from canal.surface import MIN_RADIUS
 
@@ -58,7 +59,7 @@ class Travel(RuleBasedStateMachine):
     def hold(self, stick, buttons, steps):
         """The same stick and buttons for a while."""
         for _ in range(steps):
-            self.go(stick, buttons)
+            self.go(in_unit_disc(*stick), buttons)
 
     @rule(seconds=st.floats(0, 8))
     def let_go(self, seconds):
@@ -126,7 +127,7 @@ class Travel(RuleBasedStateMachine):
         if after.disk != before.disk:
             assert across <= travel * self.spacing * (1 + 1e-6) + 1e-9
         else:
-            assert across <= 20 / self.options.delta * dt * min(math.hypot(*stick), 1.0) * (1 + 1e-6) + 1e-9
+            assert across <= 20 / self.options.delta * dt * math.hypot(*stick) * (1 + 1e-6) + 1e-9
             press = (after.press_x, after.press_y, after.press_z)
             assert moved @ press <= GLANCING * np.linalg.norm(moved) + 1e-12
         if after.alarm and after.disk != before.disk and not any(self.force):

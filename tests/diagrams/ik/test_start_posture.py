@@ -11,7 +11,7 @@ from canal.errors import InputError
 from canal.surface import CanalSurface
 from diagrams.ik.options import IkOptions
 from diagrams.ik.solver import IkSolver
-from diagrams.ik.start_posture import StartPosture, disk_pose, find_start_posture, follow
+from diagrams.ik.start_posture import StartPosture, find_start_posture, follow
 
 
 @pytest.fixture(scope="module")
@@ -33,7 +33,7 @@ def test_the_whole_canal_is_followed_from_it(solver: IkSolver, canal: CanalSurfa
     assert start.complete
     assert start.branches > 1
     assert start.largest_step < 0.05
-    home = disk_pose(canal, canal.home_disk)
+    home = canal.pose(canal.home_disk)
     np.testing.assert_allclose(pose_of(solver, start.q)[:3], home[:3], atol=1e-4)
 
 
@@ -41,7 +41,7 @@ def test_it_holds_in_the_loop_forth_and_back(solver: IkSolver, canal: CanalSurfa
     home, last = canal.home_disk, canal.n_disks - 1
     q, v = start.q, np.zeros(6)
     for disk in (*range(home, -1, -1), *range(last + 1), *range(last, home, -1)):
-        result = solver.solve(disk_pose(canal, disk), float(canal.orientation_weights[disk]), q, 0.06, v)
+        result = solver.solve(canal.pose(disk), float(canal.orientation_weights[disk]), q, 0.06, v)
         q, v = result.q, (result.q - q) / 0.06
         assert result.position_error < 1e-3
         np.testing.assert_allclose(q, start.path[disk], atol=0.3)  # another branch is more than 1 rad away
