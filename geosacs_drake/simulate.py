@@ -73,7 +73,8 @@ def simulate(
     sleep = sleep_manager(system.station)
 
     def sleep_and_watch(root_context: Context) -> EventStatus:
-        system.peaks.look(root_context)
+        if sleep.is_robot_awake(root_context):
+            system.peaks.look(root_context)
         status = sleep(root_context)
         watch(root_context)
         return EventStatus.ReachedTermination(system.diagram, INTERRUPTED) if asked_to_end() else status

@@ -113,8 +113,11 @@ class SleepManager:
     def _is_awake(self, root_context: Context) -> np.ndarray:
         """Of each item, and of the arm. Shape (n + 1,), bool."""
         context = self._plant.GetMyContextFromRoot(root_context)
-        arm = self._arm is None or self._arm.is_awake(root_context)
-        return np.array([*(item.is_awake(context) for item in self._items), arm])
+        return np.array([*(item.is_awake(context) for item in self._items), self.is_robot_awake(root_context)])
+
+    def is_robot_awake(self, root_context: Context) -> bool:
+        """Whether the arm is simulated; while it sleeps, nothing that presses on it changes."""
+        return self._arm is None or self._arm.is_awake(root_context)
 
     def names_awake(self, root_context: Context) -> list[str]:
         """What is being simulated: items by name, and `robot`."""
