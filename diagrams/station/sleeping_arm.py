@@ -123,9 +123,9 @@ class Standing(LeafSystem):
 def switch_command(builder: DiagramBuilder, standing: Standing, actuator_state: OutputPort) -> OutputPort:
     """Give the plant the drives' command, and what was kept of it while the arm sleeps.
 
-    Drake's own switch, as the plant asks 240 times a second. Its output depends on the stage, too: what Drake has cached
-    of the drives' constraints while the joints were free is not to be met again when they are locked (it ends the
-    process, `CalcActuation`).
+    It is Drake's own switch, since the plant asks 240 times a second. Its output depends on the stage, too: what Drake
+    has cached of the drives' constraints while the joints were free is not to be met again when they are locked (it
+    ends the process, `CalcActuation`).
 
     Args:
         builder: with `standing` in it.
