@@ -11,6 +11,8 @@ from functools import cached_property
 
 import numpy as np
 
+from canal.rows import length_along
+
 MIN_RADIUS = 1e-9
 """[m] Below this a disk is a point: there is nothing to correct, and the ratio is carried through it."""
 
@@ -59,7 +61,7 @@ class DiskLookup:
         self._planes = planes
         self._radii = radii
         self.last = len(self._rows) - 1
-        self.arc = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(centers, axis=0), axis=1))])
+        self.arc = length_along(centers)
         self.arc.setflags(write=False)
 
     def at(self, disk: float) -> tuple[int, float]:

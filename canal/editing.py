@@ -11,11 +11,12 @@ from scipy.optimize import linear_sum_assignment
 
 from canal.demonstration import Demonstration
 from canal.errors import InputError
-from canal.learning.alignment import align_to, sample
+from canal.learning.alignment import align_to
 from canal.learning.learn import N_POINTS, build_surface, disk_count, unit_tangents
 from canal.learning.splines import arc_length, fit_spline, knots_every, rotation_curve, slerp, uniform_in_arc
 from canal.learning.trimming import trim
 from canal.learning_options import LearningOptions
+from canal.rows import accumulate, rows_between
 from canal.support_planes import SupportPlane
 from canal.surface import CanalSurface
 
@@ -54,8 +55,8 @@ def cut(canal: CanalSurface, first: float, last: float) -> CanalSurface:
     share = (canal.arc[-1] / end * (last - first)) / canal.length
     return rebuild(
         canal,
-        np.stack([sample(curve, keep) for curve in canal.demonstrations]),
-        np.stack([_unit(sample(turned, keep)) for turned in canal.demonstration_orientations]),
+        np.stack([rows_between(curve, keep) for curve in canal.demonstrations]),
+        np.stack([_unit(rows_between(turned, keep)) for turned in canal.demonstration_orientations]),
         moving_time_s=canal.moving_time_s * share,
         share=share,
         beyond=beyond_data(canal, keep),
@@ -146,10 +147,10 @@ def add_demonstration(canal: CanalSurface, demonstration: Demonstration) -> Cana
     learned = canal.options
     motion = trim(demonstration, N_POINTS, learned.soft_trimming)
     disks = np.linspace(0, canal.n_disks - 1, N_POINTS)
-    warp = align_to(sample(canal.directrix, disks), motion, learned.band, learned.warp_smoothing)
+    warp = align_to(rows_between(canal.directrix, disks), motion, learned.band, learned.warp_smoothing)
     knots, at = knots_every(learned.step), np.linspace(0.0, 1.0, canal.n_disks)
-    position = fit_spline(knots, sample(motion.position, warp), learned.interpolate)(at)
-    turned = sample(motion.orientation, warp[np.round(knots * (N_POINTS - 1)).astype(int)])
+    position = fit_spline(knots, rows_between(motion.position, warp), learned.interpolate)(at)
+    turned = rows_between(motion.orientation, warp[np.round(knots * (N_POINTS - 1)).astype(int)])
     n = len(canal.demonstrations)
     return rebuild(
         canal,
@@ -213,7 +214,7 @@ def rebuild(
     """
     m = positions.shape[1]
     steps = np.linalg.norm(np.diff(positions.mean(axis=0), axis=0), axis=1)
-    along = np.concatenate([[0.0], np.cumsum(np.maximum(steps, 1e-12))])
+    along = accumulate(np.maximum(steps, 1e-12))
     u = along / along[-1]
     curves = [CubicSpline(u, curve) for curve in positions]
     mean = CubicSpline(u, positions.mean(axis=0))
@@ -225,7 +226,7 @@ def rebuild(
     position = np.interp(at, u, np.arange(m, dtype=float))
     return build_surface(
         np.stack([curve(at) for curve in curves]),
-        np.stack([_unit(sample(turned, position)) for turned in quaternions]),
+        np.stack([_unit(rows_between(turned, position)) for turned in quaternions]),
         tangents=unit_tangents(mean(at, 1)),
         moving_time_s=moving_time_s,
         options=learned,

@@ -8,6 +8,7 @@ import numpy as np
 from scipy.spatial import KDTree
 
 from canal.learning.disk_normals import crossings, tilts
+from canal.rows import rows_between
 from canal.surface import CanalSurface
 
 _RATIO = 0.8  # η at which steps of points on the disks are compared with those of the centres
@@ -141,4 +142,4 @@ def curvature(canal: CanalSurface) -> np.ndarray:
 
 def _dense(curve: np.ndarray, per_step: int = 20) -> np.ndarray:
     at = np.linspace(0, len(curve) - 1, per_step * len(curve))
-    return np.column_stack([np.interp(at, np.arange(len(curve)), column) for column in curve.T])
+    return rows_between(curve, at)

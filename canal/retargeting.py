@@ -11,6 +11,7 @@ from scipy.spatial.transform import Rotation, Slerp
 from canal.editing import beyond_data, own_options, rebuild
 from canal.errors import InputError
 from canal.quality import angles, canal_quality, curvature
+from canal.rows import rows_between
 from canal.support_planes import SupportPlane
 from canal.surface import CanalSurface
 
@@ -164,8 +165,8 @@ def shape_cost(before: CanalSurface, after: CanalSurface) -> ShapeCost:
         after: as it is now, with any number of disks.
     """
     u = np.linspace(0.0, 1.0, 401)
-    old, new = (_at(u, canal.arc / canal.length, canal.directrix) for canal in (before, after))
-    tangent_old, tangent_new = (_at(u, canal.arc / canal.length, canal.tangents) for canal in (before, after))
+    old, new = (rows_between(canal.directrix, u, canal.arc / canal.length) for canal in (before, after))
+    tangent_old, tangent_new = (rows_between(canal.tangents, u, canal.arc / canal.length) for canal in (before, after))
     tangent_old /= np.linalg.norm(tangent_old, axis=1, keepdims=True)
     tangent_new /= np.linalg.norm(tangent_new, axis=1, keepdims=True)
     stretch = np.linalg.norm(np.diff(new, axis=0), axis=1) / np.linalg.norm(np.diff(old, axis=0), axis=1)
@@ -209,7 +210,3 @@ def _target(
 
 def _turned(turns: Rotation, quaternions: np.ndarray) -> np.ndarray:
     return np.asarray((turns * Rotation.from_quat(quaternions, scalar_first=True)).as_quat(scalar_first=True))
-
-
-def _at(at: np.ndarray, grid: np.ndarray, rows: np.ndarray) -> np.ndarray:
-    return np.column_stack([np.interp(at, grid, column) for column in rows.T])

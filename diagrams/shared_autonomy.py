@@ -115,7 +115,14 @@ def build_shared_autonomy(
     navigation, slower = at_joint_pace(solver, canal, start, scenario.navigation)
     station = LioStation.AddToBuilder(builder=builder, world=scenario, seed=seed, q0=start.q, filmed=video is not None)
     navigator = CanalNavigator.AddToBuilder(builder=builder, canal=canal, options=navigation, period=period)
-    ik = builder.AddNamedSystem("ik", OrientationWeightedIk(solver, q_start=start.q, period=period))
+    ik = OrientationWeightedIk.AddToBuilder(
+        builder=builder,
+        solver=solver,
+        q_start=start.q,
+        X_BT_desired=navigator.GetOutputPort("X_BT_desired"),
+        orientation_weight=navigator.GetOutputPort("orientation_weight"),
+        period=period,
+    )
     monitor = Monitor.AddToBuilder(builder=builder, canal=canal, goals=station.goals, options=scenario.monitor)
     pairs, stops, speeds = len(station.contact_pairs), arm_stops(station.plant), arm_speeds(station.plant)
     peaks = Peaks.AddToBuilder(builder=builder, contact_pairs=pairs, stops=stops, speeds=speeds, period=period)
@@ -192,8 +199,6 @@ def build_shared_autonomy(
     for name in ("contact_forces", "hand_force"):
         builder.Connect(measured[name], alarm.GetInputPort(name))
     builder.Connect(alarm.GetOutputPort("alarm"), navigator.GetInputPort("alarm"))
-    builder.Connect(navigator.GetOutputPort("X_BT_desired"), ik.GetInputPort("X_BT_desired"))
-    builder.Connect(navigator.GetOutputPort("orientation_weight"), ik.GetInputPort("orientation_weight"))
     builder.Connect(ik.GetOutputPort("desired_state"), station.GetInputPort("desired_state"))
     builder.Connect(navigator.GetOutputPort("gripper_command"), station.GetInputPort("gripper_command"))
     # Both judge by what is, not by a sample of it: they look when it has just been computed.

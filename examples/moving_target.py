@@ -14,6 +14,7 @@ from pydrake.systems.primitives import ConstantVectorSource, LogVectorOutput, Tr
 from pydrake.trajectories import PiecewisePolynomial
 from style import BLACK, BLUE, GREY, RED, fit, new_figure, save, solid
 
+from diagrams.ik.solver import IkSolver
 from diagrams.ik.system import IkStatusField, OrientationWeightedIk
 from diagrams.station.lio_arm import TCP_FRAME, arm_joints, arm_speeds, make_arm_plant
 
@@ -49,8 +50,7 @@ for weight, color in ((15.0, BLUE), (0.02, RED)):
     weighed = builder.AddSystem(ConstantVectorSource(np.array([weight])))
     ik = OrientationWeightedIk.AddToBuilder(
         builder=builder,
-        plant=arm,
-        tcp_frame=TCP_FRAME,
+        solver=IkSolver(arm, TCP_FRAME),
         q_start=HOME,
         X_BT_desired=target.get_output_port(),
         orientation_weight=weighed.get_output_port(),

@@ -11,6 +11,7 @@ from canal.errors import InputError
 from canal.learning.trimming import ROTATION_LENGTH_M, Motion
 from canal.learning.warping import warping_path
 from canal.learning_options import BAND, WARP_SMOOTHING
+from canal.rows import accumulate, rows_between
 
 ROUNDS = 3  # against the running mean, for three demonstrations and more
 
@@ -42,7 +43,7 @@ def align(motions: list[Motion], band: float = BAND, smoothing: float = WARP_SMO
         return _centred(_smoothed(_along(path, path.mean(axis=1), m), smoothing * m))
     warps = np.tile(identity, (n, 1))
     for _ in range(ROUNDS):
-        mean = np.mean([sample(curve, warp) for curve, warp in zip(curves, warps, strict=True)], axis=0)
+        mean = np.mean([rows_between(curve, warp) for curve, warp in zip(curves, warps, strict=True)], axis=0)
         found = []
         for curve in curves:
             path = warping_path(mean, curve, band)
@@ -68,12 +69,12 @@ def evenly_moving(motions: list[Motion], warps: np.ndarray) -> np.ndarray:
     m = warps.shape[1]
     squared = np.zeros(m - 1)
     for motion, warp in zip(motions, warps, strict=True):
-        squared += np.sum(np.diff(sample(motion.position, warp), axis=0) ** 2, axis=1)
+        squared += np.sum(np.diff(rows_between(motion.position, warp), axis=0) ** 2, axis=1)
         # A step of a quaternion is half of the angle.
         squared += (2.0 * ROTATION_LENGTH_M) ** 2 * np.sum(
-            np.diff(sample(motion.orientation, warp), axis=0) ** 2, axis=1
+            np.diff(rows_between(motion.orientation, warp), axis=0) ** 2, axis=1
         )
-    moved = np.concatenate([[0.0], np.cumsum(np.sqrt(squared / len(motions)))])
+    moved = accumulate(np.sqrt(squared / len(motions)))
     even = moved / moved[-1] + 1e-6 * np.linspace(0.0, 1.0, m)  # strictly increasing
     at = np.interp(np.linspace(0.0, even[-1], m), even, np.arange(m, dtype=float))
     return np.stack([np.interp(at, np.arange(m), warp) for warp in warps])
@@ -100,20 +101,6 @@ def align_to(
     m = len(reference)
     path = warping_path(reference, motion.position, band)
     return np.asarray(_smoothed(_along(path, path[:, 0], m)[1:], smoothing * m)[0])
-
-
-def sample(values: np.ndarray, at: np.ndarray) -> np.ndarray:
-    """Values between the samples, linearly. `values` (M, k), `at` in [0, M - 1]; shape (len(at), k).
-
-    Args:
-        values: rows. Shape (M, k).
-        at: positions in [0, M - 1]. Shape (P,).
-
-    Returns:
-        Shape (P, k).
-    """
-    grid = np.arange(len(values), dtype=float)
-    return np.column_stack([np.interp(at, grid, column) for column in values.T])
 
 
 def _along(path: np.ndarray, tau: np.ndarray, m: int) -> np.ndarray:

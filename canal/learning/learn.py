@@ -11,13 +11,14 @@ from threadpoolctl import threadpool_limits
 from canal.demonstration import Demonstration
 from canal.errors import InputError
 from canal.learning import orientation as orient
-from canal.learning.alignment import align, evenly_moving, sample
+from canal.learning.alignment import align, evenly_moving
 from canal.learning.disk_normals import MAX_TILT, continuous_directions, crossings, relax_normals, reversals, tilts
 from canal.learning.ellipses import FEWEST_FOR_ELLIPSES, disk_ellipses
 from canal.learning.frames import correction_frames, perpendicular
 from canal.learning.splines import arc_length, fit_spline, knots_every, rotation_curve, uniform_in_arc
 from canal.learning.trimming import trim
 from canal.learning_options import MEASURED, LearningOptions
+from canal.rows import rows_between
 from canal.support_planes import SupportPlane, dips, hold_at_planes
 from canal.surface import CanalSurface
 
@@ -73,7 +74,7 @@ def _learn(
     knots = knots_every(options.step)
     curves = []
     for (motion, _), warp in zip(motions, warps, strict=True):
-        curves.append(fit_spline(knots, sample(motion.position, warp), options.interpolate))
+        curves.append(fit_spline(knots, rows_between(motion.position, warp), options.interpolate))
     mean = fit_spline(knots, np.mean([curve(knots) for curve in curves], axis=0), interpolate=True)
     u_arc = arc_length(mean)
     length = u_arc[1][-1]
@@ -86,7 +87,7 @@ def _learn(
     positions = np.stack([curve(at) for curve in curves])
     quaternions = []
     for (motion, _), warp in zip(motions, warps, strict=True):
-        turned = sample(motion.orientation, warp[np.round(knots * (N_POINTS - 1)).astype(int)])
+        turned = rows_between(motion.orientation, warp[np.round(knots * (N_POINTS - 1)).astype(int)])
         quaternions.append(rotation_curve(knots, turned / np.linalg.norm(turned, axis=1, keepdims=True), at))
 
     progress("disks and frames")

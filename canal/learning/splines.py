@@ -8,6 +8,8 @@ import numpy as np
 from scipy.interpolate import CubicSpline, PchipInterpolator
 from splines.quaternion import CatmullRom, UnitQuaternion
 
+from canal.rows import accumulate, rows_between
+
 # What a squared miss along the curve counts half-way, relative to one across: (10 mm of tremor / 50 mm of smoothing of
 # the alignment)²; more towards the ends, there fully. At 1 the curve spends its few knots on *when* a hand hesitated:
 # 13.4 mm RMS on the recorded, 8.1 at worst on generated demonstrations; so, 12.4 and 7.9. At 4e-4 samples slide along
@@ -38,7 +40,7 @@ def fit_spline(knots: np.ndarray, samples: np.ndarray, interpolate: bool) -> Cub
     """
     u = np.linspace(0.0, 1.0, len(samples))
     if interpolate:
-        return _natural(knots, np.stack([np.interp(knots, u, column) for column in samples.T], axis=1))
+        return _natural(knots, rows_between(samples, knots, u))
     # The ends are held: left free they end 18 mm from where the person did, up to 4 mm below the table.
     basis = _natural(knots, np.eye(len(knots)))(u)
     ends, inner = samples[[0, -1]], basis[:, 1:-1]
@@ -80,7 +82,7 @@ def arc_length(curve: CubicSpline, n_intervals: int = 2000) -> tuple[np.ndarray,
     u = np.linspace(0.0, 1.0, n_intervals + 1)
     at = (u[:-1, None] + _GAUSS_AT * np.diff(u)[:, None]).ravel()
     speed = np.linalg.norm(curve(at, 1), axis=1).reshape(-1, 3)
-    return u, np.concatenate([[0.0], np.cumsum(speed @ _GAUSS_WEIGHT * np.diff(u))])
+    return u, accumulate(speed @ _GAUSS_WEIGHT * np.diff(u))
 
 
 def uniform_in_arc(curve: CubicSpline, n: int, u_arc: tuple[np.ndarray, np.ndarray] | None = None) -> np.ndarray:

@@ -10,6 +10,7 @@ from scipy.ndimage import gaussian_filter1d
 from canal.demonstration import SAMPLE_RATE_HZ, Demonstration
 from canal.errors import InputError
 from canal.learning.moving_time import moving_time
+from canal.rows import accumulate, rows_between
 
 SMOOTHING_SAMPLES = 4.0  # [samples at 20 Hz] σ of the smoothing in time
 ROTATION_LENGTH_M = 0.07  # [m / rad] λ: how much motion a turn on the spot is
@@ -67,8 +68,8 @@ def trim(demonstration: Demonstration, n_points: int, soft: bool = True) -> Moti
     clock = np.linspace(0.0, recorded[-1], n)
     # A fast recording is smoothed as long as a slow one; a short one never over more than its own features.
     sigma = min(max(SMOOTHING_SAMPLES, SMOOTHING_SAMPLES / (SAMPLE_RATE_HZ * dt)), n / 50.0)
-    position = _at(clock, recorded, demonstration.position)
-    turned = _at(clock, recorded, continuous_signs(demonstration.orientation))
+    position = rows_between(demonstration.position, clock, recorded)
+    turned = rows_between(continuous_signs(demonstration.orientation), clock, recorded)
     moving = moving_time(np.hstack([position, 2.0 * ROTATION_LENGTH_M * turned]), dt)
     if soft:
         position, turned = _smooth(position, sigma), _smooth(turned, sigma)
@@ -81,15 +82,15 @@ def trim(demonstration: Demonstration, n_points: int, soft: bool = True) -> Moti
             f"least {1e3 * SLOWEST_M_S:.0f} mm/s); give time in seconds (learn --time-unit ms, us or ns)"
         )
     ratio = (step / (SPEED_SHARE * usual)) ** 2
-    length = np.concatenate([[0.0], np.cumsum(step * ratio / (1.0 + ratio))])
+    length = accumulate(step * ratio / (1.0 + ratio))
     # The least slope keeps ℓ invertible where nothing moves at all.
     length += np.arange(n) * (1e-9 * length[-1] / n)
     at = np.interp(np.linspace(0.0, length[-1], n_points), length, np.arange(n, dtype=float))
     if not soft:
         at = np.linspace(0.0, n - 1.0, n_points)
-    turned = _at(at, np.arange(n, dtype=float), orientation)
+    turned = rows_between(orientation, at)
     return Motion(
-        position=_at(at, np.arange(n, dtype=float), position),
+        position=rows_between(position, at),
         orientation=turned / np.linalg.norm(turned, axis=1, keepdims=True),
         moving_time=moving,
         length=float(length[-1]),
@@ -117,7 +118,7 @@ def _without_gaps(demonstration: Demonstration) -> np.ndarray:
         even = dt <= longest
         speed = np.sum(step[even] ** 2) / max(np.sum(step[even] * dt[even]), 1e-12)
         dt = np.minimum(dt, np.maximum(longest, step / max(speed, 1e-12)))
-    return np.concatenate([[0.0], np.cumsum(dt)])
+    return accumulate(dt)
 
 
 def _refuse_jumps(demonstration: Demonstration) -> None:
@@ -137,11 +138,6 @@ def continuous_signs(orientation: np.ndarray) -> np.ndarray:
     turns = np.sum(orientation[1:] * orientation[:-1], axis=1) < 0
     sign = np.where(np.cumsum(turns) % 2 == 1, -1.0, 1.0)
     return np.concatenate([orientation[:1], orientation[1:] * sign[:, None]])
-
-
-def _at(at: np.ndarray, grid: np.ndarray, values: np.ndarray) -> np.ndarray:
-    """Linear interpolation of each column of `values` (given at `grid`). Shape (len(at), k)."""
-    return np.column_stack([np.interp(at, grid, column) for column in values.T])
 
 
 def _smooth(values: np.ndarray, sigma: float) -> np.ndarray:

@@ -12,9 +12,9 @@ from dataclasses import dataclass
 
 import numpy as np
 from pydrake.common.value import Value
-from pydrake.geometry import Meshcat, QueryObject, SceneGraph
+from pydrake.geometry import Meshcat, QueryObject
 from pydrake.math import RigidTransform, RotationMatrix
-from pydrake.systems.framework import Context, DiagramBuilder, EventStatus, LeafSystem, State
+from pydrake.systems.framework import Context, EventStatus, LeafSystem, State
 from scipy.spatial.transform import Rotation
 
 from diagrams.deformable.items import DeformableItem
@@ -67,32 +67,6 @@ class DeformableView(LeafSystem):
         self.DeclareInitializationPublishEvent(self._publish)
         self.DeclarePeriodicUnrestrictedUpdateEvent(self._period, 0.0, self._update)
         self.DeclarePeriodicPublishEvent(self._period, 0.0, self._publish)
-
-    @staticmethod
-    def AddToBuilder(
-        *,
-        builder: DiagramBuilder,
-        scene_graph: SceneGraph,
-        items: Sequence[DeformableItem],
-        meshcat: Meshcat,
-        recording: bool = False,
-        path: str = "deformable",
-    ) -> DeformableView:
-        """Add a view of `items`, connected to the scene graph's query port.
-
-        Args:
-            builder: of the diagram that it is added to.
-            scene_graph: that the plant is registered with.
-            items: that are shown.
-            meshcat: that shows it.
-            recording: whether it is a recording, which keeps every picture.
-            path: in Meshcat.
-        """
-        view = builder.AddNamedSystem(
-            "deformable_view", DeformableView(items=items, meshcat=meshcat, recording=recording, path=path)
-        )
-        builder.Connect(scene_graph.get_query_output_port(), view.GetInputPort("query_object"))
-        return view
 
     def _before(self, context: Context, i: int) -> _Drawn:
         nodes, frames, pose = (context.get_discrete_state(index).value() for index in self._drawn[i])

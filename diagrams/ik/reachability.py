@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from canal.rows import rows_between
 from canal.surface import CanalSurface
 from diagrams.ik.solver import IkSolver
 from diagrams.ik.start_posture import (
@@ -55,7 +56,7 @@ class ReachReport:
 
     def colors(self) -> np.ndarray:
         """Red, green and blue in [0, 1] for each disk, from red (out of reach) to blue (all of it), shape (N, 3)."""
-        return np.column_stack([np.interp(self.share, _SHARES, column) for column in _COLORS.T])
+        return rows_between(_COLORS, self.share, np.array(_SHARES))
 
     def describe(self) -> list[str]:
         """Lines for a person: how much is reached, and from where to where it is not."""

@@ -4,12 +4,9 @@ import enum
 from typing import Any
 
 import numpy as np
-from pydrake.multibody.plant import MultibodyPlant
-from pydrake.multibody.tree import Frame
-from pydrake.systems.framework import Context, Diagram, DiagramBuilder, DiscreteValues, LeafSystem, OutputPort
+from pydrake.systems.framework import Context, DiagramBuilder, DiscreteValues, LeafSystem, OutputPort
 
 from canal.errors import InputError
-from diagrams.ik.options import IkOptions
 from diagrams.ik.solver import IkSolver
 
 CONTROL_PERIOD = 0.01  # [s]
@@ -109,38 +106,25 @@ class OrientationWeightedIk(LeafSystem):
     def AddToBuilder(
         *,
         builder: DiagramBuilder,
-        plant: MultibodyPlant,
-        tcp_frame: Frame | str,
+        solver: IkSolver,
         q_start: np.ndarray,
-        options: IkOptions | None = None,
-        base_frame: Frame | str | None = None,
         X_BT_desired: OutputPort | None = None,
         orientation_weight: OutputPort | None = None,
         period: float = CONTROL_PERIOD,
-        diagram: Diagram | None = None,
         name: str = "ik",
     ) -> "OrientationWeightedIk":
         """Add the system, connect the ports that are given, return it.
 
-        `plant` is the arm alone, finalized: the solver's own copy for kinematics, never the one that is simulated;
-        `diagram` holds it with its SceneGraph when the options ask for collision avoidance.
-
         Args:
             builder: of the diagram that it is added to.
-            plant: the arm alone, finalized.
-            tcp_frame: T, of the plant.
-            q_start: [rad]. Shape (n,).
-            options: None for the defaults.
-            base_frame: B; None for the world's.
+            solver: of the arm alone: its plant is a copy for kinematics, never the one that is simulated.
+            q_start: first command, [rad]. Shape (n,).
             X_BT_desired: port that is connected; None: not yet.
             orientation_weight: likewise.
             period: between updates, [s].
-            diagram: holds the plant with its SceneGraph.
             name: of the system.
         """
-        solver = IkSolver(plant, tcp_frame, options, base_frame, diagram)
-        system = OrientationWeightedIk(solver, q_start=q_start, period=period)
-        builder.AddNamedSystem(name, system)
+        system = builder.AddNamedSystem(name, OrientationWeightedIk(solver, q_start=q_start, period=period))
         if X_BT_desired is not None:
             builder.Connect(X_BT_desired, system.GetInputPort("X_BT_desired"))
         if orientation_weight is not None:

@@ -1,4 +1,8 @@
-"""Videos without a display: a camera that stands in the room, the gripper's own in a corner of its picture."""
+"""Videos without a display: a camera that stands in the room, the gripper's own in a corner of its picture.
+
+Drake's `VideoWriter` records one camera a file, writes the file in place, and needs OpenCV for an `.mp4`. Here two
+pictures make one, the file appears whole or not at all, and `ffmpeg` makes the `.mp4`; hence a recorder of our own.
+"""
 
 from __future__ import annotations
 

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from canal.rows import length_along, rows_between
 from canal.surface import CanalSurface
 
 
@@ -81,12 +82,11 @@ def dashes(points: np.ndarray, radius: float, length: float, gap: float) -> Tria
         gap: between dashes, [m].
     """
     points = np.asarray(points, dtype=float)
-    steps = np.linalg.norm(np.diff(points, axis=0), axis=1)
-    arc = np.concatenate([[0.0], np.cumsum(steps)])
+    arc = length_along(points)
     tubes = []
     for start in np.arange(0.0, max(arc[-1], length), length + gap):
         along = np.linspace(start, min(start + length, arc[-1]), 4)
-        tubes.append(tube(np.stack([np.interp(along, arc, points[:, k]) for k in range(3)], axis=1), radius))
+        tubes.append(tube(rows_between(points, along, arc), radius))
     return merge(tubes)
 
 

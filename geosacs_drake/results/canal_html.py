@@ -11,6 +11,7 @@ import numpy as np
 
 from canal.errors import InputError
 from canal.files import write_and_rename
+from canal.rows import length_along
 from canal.surface import CanalSurface
 from diagrams.view.canal_meshes import TriangleMesh, canal_rings, canal_skin, dashes, merge, tube
 
@@ -147,7 +148,7 @@ def serve(page: str, port: int = 0) -> ThreadingHTTPServer:
 def _thinned(curve: np.ndarray, spacing: float = 0.004) -> np.ndarray:
     """A polyline at most as dense as the eye needs; at least two points. Shape (k, 3)."""
     curve = np.asarray(curve, dtype=float)
-    arc = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(curve, axis=0), axis=1))])
+    arc = length_along(curve)
     keep = np.unique(np.searchsorted(arc, np.arange(0.0, arc[-1], spacing)))
     return curve[np.unique(np.concatenate([[0], keep, [len(curve) - 1]]))]
 

@@ -7,6 +7,8 @@ from collections.abc import Mapping
 import numpy as np
 from scipy.optimize import minimize_scalar
 
+from canal.rows import rows_between
+
 LONGEST_DELAY_S = 0.5
 """Where the delay is looked for: drives that lag by more follow nothing."""
 LEAST_WAY_M = 0.01
@@ -43,7 +45,7 @@ class Tracking:
 
     def _arm_at(self, times: np.ndarray) -> np.ndarray:
         """Where the tool was at `times` (m,) [s]. Shape (m, 3)."""
-        return np.column_stack([np.interp(times, self.measured_at, axis) for axis in self.measured.T])
+        return rows_between(self.measured, times, self.measured_at)
 
     def _delay(self) -> float | None:
         """The shift in time that brings what was measured nearest to what was wanted, in the mean of squares."""

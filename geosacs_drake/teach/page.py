@@ -7,6 +7,7 @@ from pydrake.geometry import Meshcat, Rgba
 from pydrake.math import RollPitchYaw
 from pydrake.systems.framework import Context
 
+from canal.rows import length_along
 from diagrams.teach.path import TaughtPath
 from diagrams.teaching import Teaching
 from diagrams.view.canal_drawing import CanalDrawing
@@ -150,6 +151,6 @@ def _spaced(points: np.ndarray) -> np.ndarray:
     """Those that are far enough from each other to be seen apart, and the last."""
     if len(points) < 2:
         return points
-    way = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(points, axis=0), axis=1))])
+    way = length_along(points)
     _, first = np.unique((way / SPACING_M).astype(int), return_index=True)
     return points[np.unique(np.append(first, len(points) - 1))]

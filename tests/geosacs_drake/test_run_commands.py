@@ -10,6 +10,7 @@ from canal.demonstration import Demonstration, save_demonstration
 from canal.learning import learn_canal
 from canal.surface_file import save_canal
 from diagrams.scenario import load_scenario
+from diagrams.station.lio_ik import make_lio_solver
 from geosacs_drake.prepare_canal import prepare_canal
 from geosacs_drake.results.summary import WALL_CLOCK_KEYS
 from geosacs_drake.run import main
@@ -184,3 +185,18 @@ def test_a_canal_and_its_demonstrations_run_alike(tmp_path, monkeypatch, capfd):
     run(capfd, *common, "--demos", *demos, "--log", "b.npz", task="relocation")
     with np.load("a.npz") as a, np.load("b.npz") as b:
         np.testing.assert_array_equal(a["q"], b["q"])
+
+
+def test_a_run_with_collision_avoidance_keeps_its_distance(capfd, tmp_path):
+    log = tmp_path / "log.npz"
+    code, _, _ = run(
+        capfd, "--headless", "--items", "rigid", "--scenario", "laundry-guarded", "--duration", 4, "--log", log
+    )
+    assert code == 1, "time is up before anything is placed"
+    with np.load(log) as signals:
+        commands = signals["q_command"]
+    scenario = load_scenario("laundry-guarded")
+    solver = make_lio_solver(scenario, scenario.ik)
+    for q in commands[:: len(commands) // 20]:
+        solver.kinematics.set(q)
+        assert solver.clearance.near(0.0).distances.min(initial=1.0) >= scenario.ik.collision_avoidance.margin - 1e-6

@@ -39,9 +39,8 @@ def falling_sock(canvas, recording, until, spin=0.0):
     plant, scene_graph = AddMultibodyPlant(MultibodyPlantConfig(time_step=0.005), builder)
     sock = add_deformable_item(plant=plant, name="sock", shape=make_shape("sock"), X_WP=RigidTransform([0, 0, 1.0]))
     plant.Finalize()
-    view = DeformableView.AddToBuilder(
-        builder=builder, scene_graph=scene_graph, items=[sock], meshcat=canvas, recording=recording
-    )
+    view = builder.AddSystem(DeformableView(items=[sock], meshcat=canvas, recording=recording))
+    builder.Connect(scene_graph.get_query_output_port(), view.GetInputPort("query_object"))
     diagram = builder.Build()
     simulator = Simulator(diagram)
     context = plant.GetMyMutableContextFromRoot(simulator.get_mutable_context())

@@ -116,9 +116,8 @@ def test_bad_options_are_refused() -> None:
 
 
 def test_a_scenario_can_ask_the_arm_to_avoid_its_fixtures() -> None:
-    scenario = load_scenario("laundry")
-    assert make_lio_solver(scenario, scenario.ik).clearance is None
-    scenario.ik.collision_avoidance = CollisionAvoidanceOptions(margin=0.01, solid_bodies=["machine"])
+    plain, scenario = load_scenario("laundry"), load_scenario("laundry-guarded")
+    assert make_lio_solver(plain, plain.ik).clearance is None
     solver = make_lio_solver(scenario, scenario.ik)
     assert solver.clearance is not None
     front = pose_of(solver, START_POSTURE)

@@ -57,8 +57,7 @@ def test_in_a_diagram_it_arrives_at_the_target_at_the_allowed_speed() -> None:
     weight = builder.AddSystem(ConstantVectorSource([5.0]))
     ik = OrientationWeightedIk.AddToBuilder(
         builder=builder,
-        plant=plant,
-        tcp_frame=TCP,
+        solver=IkSolver(plant, TCP),
         q_start=Q_START,
         X_BT_desired=pose.get_output_port(),
         orientation_weight=weight.get_output_port(),

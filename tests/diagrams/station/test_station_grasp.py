@@ -2,9 +2,10 @@
 
 import numpy as np
 import pytest
+from pydrake.common.eigen_geometry import Quaternion
+from pydrake.math import RigidTransform
 from pydrake.systems.analysis import Simulator
 
-from diagrams.geometry.pose_vector import vector_to_pose
 from diagrams.ik.solver import IkSolver
 from diagrams.scenario import load_scenario
 from diagrams.scene.world import Region, Robot
@@ -18,6 +19,10 @@ STEP = 0.01
 AFTER = 1e-6
 """[s] A command comes just after its tick, as the IK's does."""
 SLIP = 3e-3
+
+
+def vector_to_pose(vector):
+    return RigidTransform(Quaternion(vector[3:] / np.linalg.norm(vector[3:])), vector[:3])
 
 
 def reach(solver, position, q):
