@@ -29,6 +29,7 @@ from geosacs_drake.prepare_canal import prepare_canal
 from geosacs_drake.results.summary import RunResult, summarize
 from geosacs_drake.run_options import RunOptions
 from geosacs_drake.simulate import simulate
+from models import TCP_FRAME
 
 TICK_S = 0.01
 HALF_S = 0.5
@@ -77,7 +78,7 @@ class Watch:
         closed = self._system.navigator.state(self._system.navigator.GetMyContextFromRoot(root)).gripper_closed
         plant = station.plant
         plant_context = plant.GetMyContextFromRoot(root)
-        X_WT = plant.EvalBodyPoseInWorld(plant_context, plant.GetBodyByName("tcp", station.scene.lio))
+        X_WT = plant.EvalBodyPoseInWorld(plant_context, plant.GetBodyByName(TCP_FRAME, station.scene.lio))
         if not closed:
             self._at_grip = self._held = None
             self._set_down = False

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+import re
 from collections.abc import Iterator
 from graphlib import TopologicalSorter
 from pathlib import Path
@@ -98,3 +99,17 @@ def test_files_are_short_and_folders_small(package: str) -> None:
     counts = {str(f): sum(p.parent == f for p in paths) for f in folders}
     if package not in ("tests", "examples"):  # a file of tests for each file, and a script for each idea
         assert {f: n for f, n in counts.items() if n > MOST_FILES} == {}
+
+
+def test_outputs_are_written_whole():
+    """By `canal.files`, under another name first: nothing else writes a file that a person asked for."""
+    past = re.compile(r"\.savefig\(|\.write_text\(|\.write_bytes\(|np\.savez\w*\((?!\.\.\.)|\.open\(\"w")
+    # The last two into a temporary folder.
+    writers = {"canal/files.py", "diagrams/deformable/render_mesh.py", "diagrams/view/cameras.py"}
+    found = {
+        path.relative_to(ROOT).as_posix()
+        for package in ("canal", "diagrams", "geosacs_drake")
+        for path in (ROOT / package).rglob("*.py")
+        if past.search(path.read_text())
+    }
+    assert found <= writers

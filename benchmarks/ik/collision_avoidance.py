@@ -17,7 +17,7 @@ from benchmarks.table import Row
 from diagrams.ik.options import CollisionAvoidanceOptions, IkOptions
 from diagrams.ik.solver import IkSolver
 from diagrams.station.lio_arm import TCP_FRAME, make_arm_plant
-from models import LIO_URDF
+from models import BASE_FRAME, LIO_URDF
 
 MARGIN = 0.02
 """[m]"""
@@ -36,7 +36,7 @@ def arm_and(shape: Shape, p: list[float]) -> tuple[MultibodyPlant, Diagram]:
     builder = DiagramBuilder()
     plant, _ = AddMultibodyPlantSceneGraph(builder, 0.0)
     Parser(plant).AddModels(str(LIO_URDF))
-    plant.WeldFrames(plant.world_frame(), plant.GetFrameByName("lio_base"))
+    plant.WeldFrames(plant.world_frame(), plant.GetFrameByName(BASE_FRAME))
     model = plant.AddModelInstance("obstacle")
     body = plant.AddRigidBody("obstacle", model, SpatialInertia.SolidBoxWithMass(1.0, 0.1, 0.1, 0.1))
     plant.RegisterCollisionGeometry(body, RigidTransform(), shape, "obstacle", CoulombFriction(0.5, 0.5))

@@ -18,7 +18,7 @@ from canal.surface import CanalSurface
 from diagrams.ik.reachability import ReachReport
 from diagrams.scene.layout import yaw_pose
 from diagrams.scene.open_gripper import ANGLES
-from models import LIO_URDF
+from models import BASE_FRAME, LIO_URDF
 from models.make_world import BOARD
 
 EDGE = 0.05
@@ -117,7 +117,7 @@ def _meetings(
     builder = DiagramBuilder()
     plant, scene_graph = AddMultibodyPlantSceneGraph(builder, 0.0)
     (lio,) = Parser(plant).AddModels(str(LIO_URDF))
-    plant.WeldFrames(plant.world_frame(), plant.GetFrameByName("lio_base", lio))
+    plant.WeldFrames(plant.world_frame(), plant.GetFrameByName(BASE_FRAME, lio))
 
     def board(X: RigidTransform, name: str) -> GeometryId:
         X = X.multiply(RigidTransform([0, 0, -BOARD[2] / 2]))
@@ -125,7 +125,7 @@ def _meetings(
 
     boards = [board(X, f"candidate_{k}") for k, X in enumerate(tables)]
     others = [board(X, f"standing_{k}") for k, X in enumerate(standing)]
-    others += plant.GetCollisionGeometriesForBody(plant.GetBodyByName("lio_base", lio))
+    others += plant.GetCollisionGeometriesForBody(plant.GetBodyByName(BASE_FRAME, lio))
     plant.Finalize()
     diagram = builder.Build()
     root = diagram.CreateDefaultContext()

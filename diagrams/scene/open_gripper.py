@@ -12,7 +12,7 @@ from pydrake.systems.framework import DiagramBuilder
 from scipy.spatial.transform import Rotation
 
 from diagrams.geometry.bounds import extent
-from models import LIO_URDF
+from models import BASE_FRAME, LIO_URDF, TCP_FRAME
 
 FINGERS = ("lio_finger_left", "lio_finger_right")
 ANGLES = np.linspace(0.0, 0.5236, 5)
@@ -46,7 +46,7 @@ def _finger_corners() -> np.ndarray:
     builder = DiagramBuilder()
     plant, scene_graph = AddMultibodyPlantSceneGraph(builder, 0.0)
     Parser(plant).AddModels(str(LIO_URDF))
-    plant.WeldFrames(plant.world_frame(), plant.GetFrameByName("lio_base"))
+    plant.WeldFrames(plant.world_frame(), plant.GetFrameByName(BASE_FRAME))
     plant.Finalize()
     diagram = builder.Build()
     context = plant.GetMyContextFromRoot(diagram.CreateDefaultContext())
@@ -55,7 +55,7 @@ def _finger_corners() -> np.ndarray:
     for angle in ANGLES:
         for name in FINGERS:
             plant.GetJointByName(name).set_angle(context, angle)
-        X_TW = plant.GetBodyByName("tcp").EvalPoseInWorld(context).inverse()
+        X_TW = plant.GetBodyByName(TCP_FRAME).EvalPoseInWorld(context).inverse()
         for body in map(plant.GetBodyByName, FINGERS):
             X_TF = X_TW.multiply(body.EvalPoseInWorld(context))
             for geometry in plant.GetCollisionGeometriesForBody(body):

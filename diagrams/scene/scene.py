@@ -16,7 +16,7 @@ from diagrams.deformable.laundry import make_shape
 from diagrams.geometry.bounds import BodyBounds, Extent, extent
 from diagrams.scene.layout import Spot, base_pose, draw_layout, yaw_pose
 from diagrams.scene.world import Fixture, Item, Robot, World
-from models import LIO_URDF, MODELS
+from models import BASE_FRAME, LIO_URDF, MODELS
 
 DROP = 0.001
 """Items start this far above their surface [m], and settle."""
@@ -79,7 +79,7 @@ def add_lio(plant: MultibodyPlant, robot: Robot) -> tuple[ModelInstanceIndex, Ri
     """
     X_WB = base_pose(robot)
     (lio,) = Parser(plant).AddModels(str(LIO_URDF))
-    plant.WeldFrames(plant.world_frame(), plant.GetFrameByName("lio_base", lio), X_WB)
+    plant.WeldFrames(plant.world_frame(), plant.GetFrameByName(BASE_FRAME, lio), X_WB)
     return lio, X_WB
 
 

@@ -14,9 +14,10 @@ from diagrams.deformable.items import DeformableItem
 from diagrams.geometry.box_depth import FixedBoxes
 from diagrams.geometry.contacts import each_contact, is_contact
 from diagrams.scene.scene import RigidItem, Scene
+from models import TCP_FRAME
 
 FINGERS = ("lio_finger_left", "lio_finger_right")
-HAND = ("lio_link_5", "lio_link_6", "lio_gripper", "lio_finger_left", "lio_finger_right", "tcp")
+HAND = ("lio_link_5", "lio_link_6", "lio_gripper", "lio_finger_left", "lio_finger_right", TCP_FRAME)
 """What moves with the tool: all beyond joint 5, the last one that bends."""
 
 

@@ -6,10 +6,10 @@ from pydrake.multibody.parsing import Parser
 from pydrake.multibody.plant import MultibodyPlant
 from pydrake.multibody.tree import RevoluteJoint
 
-from models import LIO_URDF
+from models import BASE_FRAME, LIO_URDF, TCP_FRAME
 
-TCP_FRAME = "tcp"
-BASE_FRAME = "lio_base"
+__all__ = ["BASE_FRAME", "JOINTS", "TCP_FRAME", "arm_joints", "arm_speeds", "make_arm_plant"]
+
 JOINTS = tuple(f"lio_joint_{k}" for k in range(1, 7))
 """Of the arm, from the base on."""
 

@@ -10,6 +10,7 @@ from pydrake.systems.framework import BasicVector, Context, LeafSystem
 
 from diagrams.geometry.pose_vector import pose_to_vector
 from diagrams.station.lio_drive import ARM
+from models import TCP_FRAME
 
 JOINTS = ARM + 2
 """Positions of the model: six of the arm, two fingers of which the second mirrors the first."""
@@ -29,7 +30,7 @@ class LioSensor(LeafSystem):
     def __init__(self, plant: MultibodyPlant, lio: ModelInstanceIndex, X_WB: RigidTransform) -> None:
         """Read the model `lio` of a finalized plant, whose base stands at `X_WB`."""
         super().__init__()
-        self._tcp = int(plant.GetBodyByName("tcp", lio).index())
+        self._tcp = int(plant.GetBodyByName(TCP_FRAME, lio).index())
         self._X_BW = X_WB.inverse()
         self._lio = self.DeclareVectorInputPort("lio_state", 2 * JOINTS)
         self._poses = self.DeclareAbstractInputPort("body_poses", AbstractValue.Make([RigidTransform()]))

@@ -16,6 +16,7 @@ from diagrams.ik.solver import IkSolver
 from diagrams.ik.start_posture import find_start_posture
 from diagrams.station.lio_arm import TCP_FRAME, make_arm_plant
 from diagrams.station.lio_station import START_POSTURE
+from geosacs_drake.results.plotting import save_figure
 
 _COLORS = LinearSegmentedColormap.from_list("reach", [(0.84, 0.19, 0.15), (0.99, 0.88, 0.56), (0.27, 0.46, 0.71)])
 
@@ -81,7 +82,7 @@ def plot_reach(path: Path, canal: CanalSurface, report: ReachReport) -> None:
             axes.axvline(disk, color="0.4", linewidth=0.8, linestyle=":")
             if axes is share:
                 axes.text(disk, 50, f" {name} ", ha="right" if disk else "left", color="0.3")
-    figure.savefig(path, dpi=120)
+    save_figure(figure, path)
 
 
 def _draw_canal(axes, canal: CanalSurface, report: ReachReport) -> None:
