@@ -19,11 +19,17 @@ class Event(StrEnum):
     """What has happened."""
 
     PRESSES = "presses"
+    """A contact force is above its limit."""
     FREE = "free"
+    """No contact force is above its limit any more."""
     STOPPED = "stopped"
+    """The run was stopped; nothing moves until Start."""
     PAUSED = "paused"
+    """The travel was paused on its disk."""
     GOES_ON = "goes on"
+    """The travel goes on after a stop or a pause."""
     IGNORED = "ignored"
+    """A press did nothing."""
 
 
 @dataclass(frozen=True)

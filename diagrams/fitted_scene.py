@@ -59,6 +59,7 @@ LEAST_FOLLOWED = 0.95
 """Of the directrix, for a canal to be within the arm's reach."""
 RINGS, SPOKES = 8, 24
 SEEDS_TRIED = 20
+"""An item is kept only if there is room for it with all of these seeds."""
 
 
 @dataclass(frozen=True)

@@ -126,4 +126,6 @@ class CanalNavigator(LeafSystem):
 
 
 DISK = FIELD_NAMES.index("disk")
+"""Index of the disk in `navigation_state`."""
 GRIPPER_CLOSED = FIELD_NAMES.index("gripper_closed")
+"""Index of the gripper's command in `navigation_state`."""

@@ -40,6 +40,7 @@ class Retarget:
     pick_yaw_deg: Angle = 0.0
     """By how much the orientation is turned about the vertical."""
     place_yaw_deg: Angle = 0.0
+    """Likewise at place."""
 
 
 @options()
@@ -65,6 +66,7 @@ class Scenario(World):
     seat: Literal["front", "left", "right", "behind"] = "front"
     """Where the person sits, seen from the robot."""
     monitor: MonitorOptions = field(default_factory=MonitorOptions)
+    """What counts as placed, and when a force is too large."""
 
 
 RENAMED = {"things": "fixtures", "soft_start": "deformable_start", "keep_clear": "collision_avoidance"}

@@ -10,6 +10,7 @@ from canal.errors import InputError
 from geosacs_drake.process.command_line import ExitStatus, end
 
 PROG = "geosacs"
+"""Name of the command."""
 
 
 def _run(task: str) -> Callable[[list[str], str], NoReturn]:

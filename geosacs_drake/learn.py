@@ -26,6 +26,7 @@ POINTS_UP = math.sin(math.radians(20.0))
 """Height of the gripper's axis from which on it is said; items are gripped from above or from the side."""
 _N_STAGES = 4
 PICTURES = (".png", ".pdf", ".svg")
+"""Endings of the files that can be drawn."""
 
 
 def main(options: LearnOptions) -> ExitStatus:

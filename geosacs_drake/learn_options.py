@@ -17,6 +17,7 @@ from canal.support_planes import SupportPlane
 from geosacs_drake.process.command_line import parse_options
 
 PROG = "geosacs_drake.learn"
+"""Name of the command."""
 _OLD_NAMES = {"--support-plane": "--support-planes"}  # singular, since it is given once for each plane
 
 
@@ -39,7 +40,9 @@ class LearnOptions:
     port: Annotated[int, Field(ge=0, le=65535)] = 0
     """TCP port for --view; 0 picks a free one."""
     recorded: Annotated[RecordingFormat, tyro.conf.arg(name="")] = AS_OURS
+    """How the recordings are to be read."""
     learning: Annotated[LearningOptions, tyro.conf.arg(name="")] = MEASURED
+    """How the canal is learned."""
 
 
 _PRIMITIVES = tyro.constructors.ConstructorRegistry()

@@ -63,7 +63,9 @@ class Origin:
     """What a run was made from."""
 
     metadata: Metadata
+    """What the log says of its run."""
     canal: CanalSurface
+    """The canal that the run travelled."""
 
     def arrays(self) -> dict[str, np.ndarray]:
         """For a log: numbers and text, nothing pickled."""

@@ -30,8 +30,11 @@ class Progress:
     """How far a run is, for whoever shows it."""
 
     time_s: float
+    """Simulated so far, [s]."""
     placed: int
+    """Items that are placed."""
     items: int
+    """Items that there are."""
 
 
 def simulate(

@@ -42,17 +42,14 @@ from diagrams.deformable.tet_mesh import TetMesh
 class DeformableMaterial:
     """What an item is made of.
 
-    Attributes
-    ----------
-    youngs_modulus : float
-        Stiffness of the bulk (cloth with air in its folds) in [Pa].
-    poissons_ratio : float
-        Small, since gathered cloth hardly widens when it is squeezed. Unitless.
-    stiffness_damping, mass_damping : float
-        Rayleigh coefficients in [s] and [1/s]; the second stands for the air: nothing falls faster than g / 5 = 2 m/s,
-        about what a shirt does that is dropped open.
-    friction : float
-        Coulomb coefficient, static = dynamic. Drake combines two surfaces as 2 a b / (a + b).
+    Attributes:
+        youngs_modulus: stiffness of the bulk (cloth with air in its folds), [Pa].
+        poissons_ratio: small, since gathered cloth hardly widens when it is squeezed.
+        stiffness_damping: Rayleigh coefficient, [s].
+        mass_damping: Rayleigh coefficient, [1/s]. It stands for the air: nothing falls faster than g / 5 = 2 m/s, about
+            what a shirt does that is dropped open.
+        friction: Coulomb coefficient, static = dynamic. Drake combines two surfaces as 2 a b / (a + b).
+        model: of the material: `linear_corotated`, `corotated` or `neohookean`.
     """
 
     youngs_modulus: float = 8.0e3

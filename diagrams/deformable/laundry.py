@@ -15,6 +15,7 @@ from canal.errors import InputError
 from diagrams.deformable.tet_mesh import EmbeddedSurface, TetBuilder, TetMesh, Tube, embed
 
 Rgb = tuple[float, float, float]
+"""Red, green and blue in [0, 1]."""
 
 
 @dataclass(frozen=True)
@@ -22,9 +23,13 @@ class DeformableShape:
     """One garment: the solid, the surface drawn for it, and its mass in [kg]. Lies around the origin, z up."""
 
     kind: str
+    """Key of `DEFORMABLE_KINDS`."""
     mesh: TetMesh
+    """The solid that is simulated, [m]."""
     surface: EmbeddedSurface
+    """What is drawn, embedded in the solid."""
     mass: float
+    """[kg]"""
 
     def density(self) -> float:
         """Mass density in [kg/m³]: of cloth with the air between its folds."""
@@ -258,3 +263,4 @@ DEFORMABLE_KINDS: dict[str, Callable[[Rgb | None, int], DeformableShape]] = {
     "tshirt": _tshirt,
     "towel": _towel,
 }
+"""What makes a garment of each kind: from its colour (None: its own) and a number of segments (0: its own)."""

@@ -37,7 +37,9 @@ class TetMesh:
     """
 
     vertices: np.ndarray
+    """Positions of the nodes, [m]. Shape (N, 3)."""
     tetrahedra: np.ndarray
+    """Indices of the corners. Shape (T, 4)."""
 
     def volumes(self) -> np.ndarray:
         """Signed volume of each tetrahedron in [m³], shape (M,)."""
@@ -78,9 +80,13 @@ class EmbeddedSurface:
     """
 
     corners: np.ndarray
+    """Of each point, the nodes of the tetrahedron that carries it. Shape (M, 4)."""
     weights: np.ndarray
+    """Barycentric coordinates of each point there. Shape (M, 4)."""
     triangles: np.ndarray
+    """Indices of points. Shape (F, 3)."""
     colors: np.ndarray
+    """Of each point: red, green and blue in [0, 1]. Shape (M, 3)."""
 
     def positions(self, node_positions: np.ndarray) -> np.ndarray:
         """Where the surface is when the nodes are at `node_positions` (N, 3) in [m]. Shape (n, 3)."""
@@ -111,12 +117,10 @@ def embed(mesh: TetMesh, points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 class Tube:
     """A tube around a curved axis in a horizontal plane: the common shape of gathered cloth.
 
-    Attributes
-    ----------
-    axis : array, shape (K, 3)
-        Points of the axis in [m], uniform in s from 0 to 1.
-    half_width, half_height : array, shape (K,)
-        Half axes of the elliptic section in [m], sideways and upwards.
+    Attributes:
+        axis: points of the axis, uniform in s from 0 to 1, [m]. Shape (K, 3).
+        half_width: half axis of the elliptic section sideways, [m]. Shape (K,).
+        half_height: likewise upwards. Shape (K,).
     """
 
     axis: np.ndarray

@@ -14,6 +14,7 @@ from diagrams.ik.options import CollisionAvoidanceOptions
 # Price of a metre of missing clearance [cost] / [m]: a start inside an obstacle has a way out, and wherever the margin
 # can be kept it is.
 SLACK_PRICE = 1e4
+"""[cost] / [m] of missing clearance."""
 # Kept beyond the margin [m], so that what the linearisation leaves over stays on the safe side.
 _PAD = 2e-6
 # Rows are formed for pairs within this of the margin [m]; the step is checked against all.

@@ -10,6 +10,7 @@ from canal.options import NotNegative, Positive, options
 
 # w_p of the paper's Table I.
 POSITION_WEIGHT = 100.0
+"""Default of w_p, [cost] / [m²]."""
 
 
 class IkStatus(enum.IntEnum):

@@ -8,7 +8,9 @@ several times in each control tick, and an array of three costs more than its ar
 import math
 
 Vector = tuple[float, float, float]
+"""Three numbers."""
 Matrix = tuple[Vector, Vector, Vector]
+"""Three rows of three numbers."""
 
 # Below this cosine (θ above 151°) sin θ loses the axis, and the symmetric part of the matrix gives it.
 _NEAR_PI_COSINE = -0.875

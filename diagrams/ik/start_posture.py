@@ -15,7 +15,9 @@ from diagrams.ik.solver import IkSolver
 
 # A disk counts as followed within these: 1 mm, and one standard deviation of the demonstrations.
 POSITION_TOLERANCE = 1e-3
+"""[m] Within this of a disk's centre it counts as reached."""
 LEAST_ORIENTATION_TOLERANCE = math.radians(0.1)
+"""[rad] The orientation may be off by one standard deviation of the demonstrations, and at least by this."""
 _RANDOM_STARTS = 24  # per sampled disk; the Lio has at most 16 branches
 _SAMPLED_DISKS = 5
 _SETTLE = 12

@@ -9,6 +9,7 @@ from canal.navigation.joystick import JOYSTICK_PERIOD
 from canal.options import NotNegative, Share, options
 
 Seconds = Annotated[float, Field(ge=0, le=60)]
+"""[s]"""
 
 
 def _whole_samples(delay_s: float) -> float:

@@ -19,13 +19,21 @@ class Mode(IntEnum):
     """What the person is about to do."""
 
     BEGIN = 0
+    """Has not pressed Start yet."""
     PICK = 1
+    """Aims above the chosen item and grips it."""
     LIFT = 2
+    """Watches whether the item comes along."""
     CARRY = 3
+    """Takes the item to its goal and lets go of it."""
     LEAVE = 4
+    """Leaves the goal, and judges what became of the item."""
     PUSH = 5
+    """Closes the gripper and goes back to push in an item that hangs out."""
     RETREAT = 6
+    """Comes back from a push, and opens the gripper."""
     FINISH = 7
+    """Has nothing left to do, and presses Stop at home."""
 
 
 @dataclass(frozen=True)
@@ -66,6 +74,7 @@ class OperatorState:
     """Where on the canal's last disk the item in the hand is to go, if anywhere will do: -1 and 1 for its sides."""
 
     SIZE = 11
+    """Numbers in the vector, without those of each item."""
 
     @staticmethod
     def unpack(vector: np.ndarray, n: int) -> tuple["OperatorState", np.ndarray, np.ndarray]:

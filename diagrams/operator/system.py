@@ -19,6 +19,7 @@ from diagrams.operator.state import EYE, Sight
 from diagrams.teleop.stick_mapping import hand_for
 
 STATE_SIZE = len(FIELD_NAMES)
+"""Numbers in `navigation_state`."""
 
 
 class OperatorMind(LeafSystem):

@@ -25,7 +25,9 @@ class Spot:
     """A point on a surface in W [m], and a turn about z [rad]."""
 
     position: np.ndarray
+    """In W, [m]. Shape (3,)."""
     yaw: float
+    """About z of W, [rad]."""
 
 
 def yaw_pose(position: list[float] | np.ndarray, yaw: float) -> RigidTransform:

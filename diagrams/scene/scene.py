@@ -34,9 +34,11 @@ class RigidItem:
     """
 
     name: str
+    """As in the scenario."""
     plant: MultibodyPlant
     index: BodyIndex
     extents: list[Extent]
+    """Of its collision shapes, for its bounds."""
 
     @property
     def body(self) -> RigidBody:
@@ -120,6 +122,7 @@ def add_scene(
 
 
 PAPER = np.array([0.97, 0.96, 0.92, 1.0])
+"""Colour of the marks."""
 
 
 def _add_fixture(plant: MultibodyPlant, world: World, fixture: Fixture, k: int) -> ModelInstanceIndex:

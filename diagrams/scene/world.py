@@ -12,6 +12,7 @@ from diagrams.scene.model_files import check_model
 from models import MODELS
 
 Kind = Literal["soft", "rigid"]
+"""How an item is simulated: as a deformable solid (soft), or as a rigid body."""
 
 
 def _ordered(least_and_largest: list[float]) -> list[float]:
@@ -35,6 +36,7 @@ class Robot:
     position: Position = field(default_factory=lambda: [0.0, 0.0, 0.0])
     """p_WB [m]."""
     yaw_deg: Angle = 0.0
+    """Turn about z of W."""
 
 
 @options()
@@ -48,9 +50,11 @@ class Fixture:
     position: Position = field(default_factory=lambda: [0.0, 0.0, 0.0])
     """Of the model's origin in W [m]."""
     yaw_deg: Angle = 0.0
+    """Turn about z of W."""
 
 
 HalfWidth = Annotated[float, Field(ge=0, le=10)]
+"""[m]"""
 
 
 @options()
@@ -117,7 +121,9 @@ class Drum:
     inward: Annotated[Position, AfterValidator(_axis)] = field(default_factory=lambda: [0.0, 1.0, 0.0])
     """The drum's axis, into the machine: along an axis of W, as the items' bounds are. Turn the robot instead."""
     depth: Annotated[float, Field(gt=0, le=10)] = 0.34
+    """From the door's plane to the back wall, [m]."""
     radius: Annotated[float, Field(gt=0, le=10)] = 0.25
+    """[m]"""
 
 
 @options()

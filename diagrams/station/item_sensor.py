@@ -15,6 +15,7 @@ from diagrams.geometry.pose_vector import pose_to_vector
 from diagrams.scene.scene import RigidItem, Scene
 
 PERIOD = 0.01
+"""[s] Between the two samples from which a deformable item's speed is measured."""
 
 
 class ItemSensor(LeafSystem):

@@ -67,8 +67,11 @@ class SleepingDeformable:
     """A deformable body and its collision proxy."""
 
     plant: MultibodyPlant
+    """Finalized."""
     scene_graph: SceneGraph
+    """In which the proxy takes the item's shape."""
     item: DeformableItem
+    """The item, with its collision proxy."""
 
     @property
     def own(self) -> list[GeometryId]:
@@ -120,7 +123,9 @@ class SleepingRigid:
     """A rigid body."""
 
     plant: MultibodyPlant
+    """Finalized."""
     item: RigidItem
+    """The item."""
 
     @property
     def own(self) -> list[GeometryId]:

@@ -28,9 +28,13 @@ class Key:
     """A button in the panel that a key presses too: `axis` of the joystick gets `value`."""
 
     label: str
+    """What the panel shows."""
     code: str
+    """The browser's name of the key."""
     axis: int
+    """Index in the joystick vector."""
     value: float = 1.0
+    """What the axis gets while it is pressed."""
 
 
 KEYS = (

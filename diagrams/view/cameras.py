@@ -52,8 +52,11 @@ class View:
     """Where a camera stands in the frame of the robot's base, and what it looks at [m]."""
 
     eye: tuple[float, float, float]
+    """Where the camera stands in B, [m]. Shape (3,)."""
     target: tuple[float, float, float]
+    """What it looks at in B, [m]. Shape (3,)."""
     fov_deg: float = 42.0
+    """Vertical field of view, [°]."""
 
 
 VIEWS = {

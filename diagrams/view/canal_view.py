@@ -33,6 +33,7 @@ BEAD_RADIUS = 0.005
 """[m] Along the directrix between the beads of the path ahead, and of a bead."""
 
 KEY_SIZE = 4
+"""Numbers in the state by which it is told whether the picture changes."""
 
 
 class CanalView(LeafSystem):

@@ -13,6 +13,7 @@ FRAMES_PER_SECOND = 32.0
 """As often as the pictures are drawn."""
 
 PAGE_TITLE = "<title>Drake MeshCat</title>"
+"""Title of the page that is written."""
 
 
 class Recording:

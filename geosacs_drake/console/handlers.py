@@ -26,10 +26,21 @@ PAGE = Path(__file__).parent / "page"
 QUICK_S = 0.1
 """[s] A page that draws as quickly may have two pictures on their way to it, another one only one."""
 NAMES = itertools.count(1)
+"""Numbers of pages, so that each has a name of its own."""
 
 
 class Server(Protocol):
-    """What the handlers ask of the server that has them."""
+    """What the handlers ask of the server that has them.
+
+    Attributes:
+        access: who may connect.
+        control: who steers, and the latest command.
+        answers: what the run does with other messages.
+        links: the pages that are connected, by name.
+        open: all websockets that are open.
+        meshcat_address: host and port of Meshcat's own server.
+        index: the page that is served.
+    """
 
     access: Access
     control: Control
@@ -224,4 +235,6 @@ ROUTES = (
     (r"/([\w-]*)/([\w.-]*)", PageFile),
     (r"/([\w-]*).*", Nothing),
 )
+"""Patterns of addresses, and what answers there."""
 SETTINGS: dict[str, Any] = {"websocket_max_message_size": MOST_BYTES, "websocket_ping_interval": 5}
+"""Of Tornado\'s application."""

@@ -112,6 +112,7 @@ class Answers:
         self.bindings = bindings or BindingFiles()
 
     on_word: Callable[[str, str], str] = staticmethod(lambda page, word: "")
+    """Called with the page and its word; returns what the page is told."""
 
     def step_samples(self, direction: tuple[float, float], mm: float) -> list[tuple[float, ...]]:
         """Sticks that move the point `mm` in a direction, one a sample: equal ones, as few as do.

@@ -10,9 +10,13 @@ MOST_BYTES = 4096
 """Of a message; a binding of a gamepad is the longest."""
 
 Coordinate = Annotated[float, Field(allow_inf_nan=False)]
+"""A finite number."""
 Pair = tuple[Coordinate, Coordinate]
+"""Two finite numbers."""
 Triple = tuple[Coordinate, Coordinate, Coordinate]
+"""Three finite numbers."""
 Name = Annotated[str, Field(min_length=1, max_length=60, pattern=r"^[\w .()+-]+$")]
+"""Of a device's bindings: at most 60 letters, none that means something in a path."""
 
 
 class Message(BaseModel):
@@ -29,6 +33,7 @@ class Drive(Message):
     """The stick: to the right and up in the unit disc; said again while it is held."""
 
     type: Literal["drive"]
+    """Tells it apart."""
     stick: Pair
 
 
@@ -36,14 +41,18 @@ class Step(Message):
     """A movement of a chosen length, in a direction of the stick."""
 
     type: Literal["step"]
+    """Tells it apart."""
     direction: Pair
+    """Right and up; its length does not matter."""
     mm: Annotated[float, Field(gt=0, le=50, allow_inf_nan=False)]
+    """[mm]"""
 
 
 class Press(Message):
     """A button, once."""
 
     type: Literal["press"]
+    """Tells it apart."""
     button: Literal["gripper", "reverse", "start", "stop"]
 
 
@@ -51,6 +60,7 @@ class Say(Message):
     """A word about who steers, or about the run."""
 
     type: Literal["take", "hand_back", "watch", "again", "leave", "hello"]
+    """The word."""
 
 
 class View(Message):
@@ -62,22 +72,29 @@ class View(Message):
     follow: bool = False
     """Whether the view is the gripper's."""
     right: Triple | None = None
+    """Right in the person's view, in B; None: not known."""
     up: Triple | None = None
+    """Up in the person's view, in B; None: not known."""
 
 
 class Seen(Message):
     """The status that was shown, by its number: tells the delay of the link."""
 
     type: Literal["seen"]
+    """Tells it apart."""
     status: Annotated[int, Field(ge=0, lt=2**53)]
+    """Number of the status."""
 
 
 class Bindings(Message):
     """How the controls of a device are bound, to be kept under a name."""
 
     type: Literal["bindings"]
+    """Tells it apart."""
     name: Name
+    """Under which they are kept."""
     bindings: dict[str, Any] = Field(max_length=40)
+    """A control for each name of a direction or a button."""
 
 
 class Jog(Message):
@@ -96,10 +113,13 @@ class Teach(Message):
     """What is to become of what is taught."""
 
     type: Literal["teach"]
+    """Tells it apart."""
     word: Literal["record", "pause", "undo", "back", "save", "discard", "reset", "learn", "travel"]
+    """What is to be done."""
 
 
 AnyMessage = Annotated[Drive | Step | Press | Say | View | Seen | Bindings | Jog | Teach, Field(discriminator="type")]
+"""What a page may send, told apart by its type."""
 _ADAPTER: TypeAdapter[AnyMessage] = TypeAdapter(AnyMessage)
 
 

@@ -17,6 +17,7 @@ LEGS = {
     Leg.HOME_TO_PLACE: "to place",
     Leg.PLACE_TO_HOME: "back from place",
 }
+"""Name of each leg for a person."""
 
 
 def doing(state: NavigationState, standing: str, *, person: bool, begun: bool) -> tuple[str, str, str]:

@@ -48,8 +48,11 @@ class Phase(Enum):
     """What a signal means."""
 
     BUILDING = "nothing is measured yet: the first signal is a KeyboardInterrupt"
+    """Nothing has been simulated yet."""
     RUNNING = "the first signal asks the run to end, and to write what it has"
+    """The simulation advances."""
     WRITING = "the first signal changes nothing but says so, since files are being written"
+    """The outputs are being written."""
 
 
 class Interrupts:

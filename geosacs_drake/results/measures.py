@@ -14,6 +14,7 @@ class Measure:
     unit: str
     """Empty for text, counts and truth values; `1` for ratios."""
     definition: str
+    """What it means, in one or two sentences."""
 
 
 MEASURES = (
@@ -98,3 +99,4 @@ MEASURES = (
     Measure("version", "", "Of this program."),
     Measure("failure", "", "Only where something inside ended the run: the library's own words."),
 )
+"""Every figure of a summary, in its order."""

@@ -10,7 +10,7 @@ ROOT = Path(__file__).parents[2]
 MODULES = sorted(path for package in ("canal", "diagrams", "geosacs_drake") for path in (ROOT / package).rglob("*.py"))
 FRAMEWORK = {"get", "open", "on_message", "on_close"}
 """Methods that Tornado calls, and describes."""
-AT_MOST = {"canal": 0, "diagrams": 74, "geosacs_drake": 47}
+AT_MOST = {"canal": 0, "diagrams": 0, "geosacs_drake": 0}
 """Constants and fields that are not documented yet, by package: fewer are welcome, more are not."""
 WITHOUT_ARGUMENTS = {"canal": 0, "diagrams": 0, "geosacs_drake": 0}
 """Likewise functions of two arguments or more without a list of them."""
