@@ -15,7 +15,7 @@ from canal.navigation.joystick import GRIPPER
 from canal.surface import CanalSurface
 from diagrams.shared_autonomy import SharedAutonomy
 from geosacs_drake.console.control import Control
-from geosacs_drake.console.words import LEGS, doing
+from geosacs_drake.console.words import LEGS, doing, start_word
 
 PERIOD_S = 0.05
 """[s]"""
@@ -87,6 +87,7 @@ class StatusReporter:
             "headline": headline,
             "sentence": sentence,
             "tone": tone,
+            "start": start_word(state),
             "leg": LEGS[leg],
             "progress": round(_progress(canal, state, leg), 4),
             "phase": round(phase(canal, state.disk), 4),

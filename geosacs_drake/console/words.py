@@ -54,6 +54,19 @@ def doing(state: NavigationState, standing: str, *, person: bool, begun: bool) -
     return *TRAVEL[leg], "go"
 
 
+def start_word(state: NavigationState) -> str:
+    """What a press of Start would do; empty where it would do nothing, since the robot waits for something else.
+
+    Args:
+        state: of the navigation.
+    """
+    if not state.running:
+        return "Start"
+    if state.paused:
+        return "Go on"
+    return "" if state.blocked or state.waiting else "Pause"
+
+
 def _waiting(leg: Leg, closed: bool) -> tuple[str, str]:
     if leg is Leg.HOME_TO_PICK:
         if closed:

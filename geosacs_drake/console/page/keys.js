@@ -15,14 +15,17 @@ export class Keys {
     this.press = press;
     this.taken = taken;
     this.ways = new Ways(stick, "keys");
+    this.listeners = [
+      ["keydown", (event) => this.down(event), true],
+      ["keyup", (event) => this.up(event), true],
+      ["blur", () => this.stick.centre(), false],
+    ];
     this.listen(window);
   }
 
-  // A frame that was clicked into gets the keys: they mean the same there.
+  // A frame that was clicked into gets the keys: they mean the same there. Listening twice is listening once.
   listen(target) {
-    target.addEventListener("keydown", (event) => this.down(event), true);
-    target.addEventListener("keyup", (event) => this.up(event), true);
-    target.addEventListener("blur", () => this.stick.centre());
+    for (const listener of this.listeners) target.addEventListener(...listener);
   }
 
   down(event) {

@@ -64,8 +64,9 @@ document.addEventListener("click", (event) => {
   if (event.detail > 0) event.target.closest?.("button, summary")?.blur();
 });
 
-const frame = byId("frame");
-frame.addEventListener("load", () => keys.listen(frame.contentWindow));
+// The frame says when it begins; where that was before this script, it is there already.
+window.listenToKeys = (target) => keys.listen(target);
+keys.listen(byId("frame").contentWindow);
 
 function meet(detail) {
   about = detail;

@@ -2,6 +2,7 @@
 // and lets nothing else go back. Meshcat's script is Drake's, unchanged.
 (() => {
   "use strict";
+  window.parent.listenToKeys?.(window);
   const Native = window.WebSocket;
 
   class OneWay {

@@ -116,5 +116,5 @@ function isStop(event) {
 }
 
 function isShown(part) {
-  return part.offsetParent !== null && !part.disabled;
+  return part.offsetParent !== null && !part.disabled && part.ariaDisabled !== "true";
 }

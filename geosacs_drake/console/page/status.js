@@ -43,7 +43,8 @@ function showTrack(status) {
 function showButtons(status, you) {
   const mine = status.holder === you;
   const others = status.holder !== "" && !mine;
-  put("start", !status.running ? "Start" : status.paused ? "Go on" : "Pause");
+  put("start", status.start || "Waiting");
+  byId("start").setAttribute("aria-disabled", String(!status.start));  // a press is still heard: it is told why
   put("gripper", status.closed ? "Let go" : "Grip");
   put("take", others ? "Take control" : !status.begun ? "Watch" : status.person ? "Hand back" : "Take control");
   document.body.classList.toggle("watching", others);

@@ -3,6 +3,7 @@
 import { settings } from "./settings.js";
 
 const REPEAT_MS = 50;
+const ASLEEP_MS = 1000;  // who was stopped for so long does not know what became of the hands
 
 export class Stick extends EventTarget {
   constructor(link) {
@@ -12,6 +13,7 @@ export class Stick extends EventTarget {
     this.active = null;
     this.value = [0, 0];
     this.silent = 0;
+    this.awake = performance.now();
     setInterval(() => this.repeat(), REPEAT_MS);
     for (const [target, event] of [[window, "blur"], [window, "pagehide"], [document, "visibilitychange"], [document, "freeze"]])
       target.addEventListener(event, () => { if (event !== "visibilitychange" || document.hidden) this.centre(); });
@@ -19,6 +21,7 @@ export class Stick extends EventTarget {
 
   // A source says where it holds the stick: right and up, in the unit disc.
   hold(source, x, y) {
+    if (this.wake()) return;
     const before = this.sources.get(source) ?? [0, 0];
     if (before[0] === x && before[1] === y) return;
     this.sources.set(source, [x, y]);
@@ -37,6 +40,14 @@ export class Stick extends EventTarget {
     this.dispatchEvent(new Event("centre"));
   }
 
+  // Asked before anything is said: which timer is the first after a sleep is chance. Says whether there was one.
+  wake() {
+    const slept = performance.now() - this.awake;
+    this.awake = performance.now();
+    if (slept > ASLEEP_MS) this.centre();
+    return slept > ASLEEP_MS;
+  }
+
   set(value) {
     const changed = value[0] !== this.value[0] || value[1] !== this.value[1];
     this.value = value;
@@ -51,6 +62,7 @@ export class Stick extends EventTarget {
   }
 
   repeat() {
+    this.wake();
     this.silent = this.rests ? this.silent + 1 : 0;
     if (this.silent <= 3) this.send();
   }

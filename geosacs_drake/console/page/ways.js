@@ -50,6 +50,7 @@ export class Ways {
   }
 
   tell() {
+    if (this.stick.wake()) return;
     let x = 0, y = 0;
     for (const way of this.held.values()) {
       x += way[0];

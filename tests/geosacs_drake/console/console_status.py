@@ -7,6 +7,7 @@ STATUS: dict[str, Any] = {
     "headline": "Going to pick",
     "sentence": "The stick shifts its path to the side.",
     "tone": "go",
+    "start": "Pause",
     "leg": "to pick",
     "progress": 0.4,
     "phase": -0.4,

@@ -3,6 +3,7 @@
 import math
 
 import pytest
+from console_status import STATUS
 from waiting import wait_until
 
 from canal.navigation.joystick import GRIPPER, REVERSE, START, STOP
@@ -209,3 +210,25 @@ def test_the_end_is_shown_with_its_measures(console, server):
     card.wait_for()
     for words in ("Every item is placed.", "1 of 1", "1:23 min", "12 % of it, 14 times", "none"):
         assert words in card.inner_text()
+
+
+def test_keys_are_heard_in_a_view_that_was_there_before_the_page(page, server):
+    """Its script may be the last to come, and by then the frame has been loaded."""
+    page.set_viewport_size({"width": 1280, "height": 800})
+    late = []
+    page.route("**/main.js", lambda route: late.append(route))
+    server.show(STATUS)
+    page.goto(server.address, wait_until="commit")
+    while not (late and len(page.frames) > 1 and page.frames[1].url.endswith("view/")):
+        page.wait_for_timeout(20)
+    page.frames[1].wait_for_load_state("load")
+    late[0].continue_()
+    wait_until(lambda: page.inner_text("#headline") == STATUS["headline"], "the status", 30)
+    page.mouse.click(300, 400)
+    page.keyboard.down("ArrowUp")
+    held(server, (0, 1))
+    for _ in range(3):
+        page.keyboard.down("Space")
+    presses(server, GRIPPER)
+    page.wait_for_timeout(200)
+    assert not any(server.control.sample().joystick[GRIPPER] for _ in range(6)), "heard once"
