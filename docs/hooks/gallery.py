@@ -26,7 +26,7 @@ SECTIONS = {
         "constants",
     ),
     "Learning a canal": ("learn_and_plot", "from_recordings", "reversal", "orientation", "support_plane"),
-    "Travelling on it": ("navigate", "ratios", "retarget"),
+    "Travelling on it": ("navigate", "ratios", "mapping", "retarget"),
     "With Drake": (
         "navigator_alone",
         "moving_target",

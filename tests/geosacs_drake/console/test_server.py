@@ -1,16 +1,15 @@
 """What a program on this machine can do to the console by a socket of its own: nothing, without the token."""
 
-import base64
-import itertools
-import json
-import os
-import socket
-import struct
+import threading
 import time
 
 import pytest
 from waiting import wait_until
 
+from benchmarks import raw_client
+from benchmarks.console_attack import BROKEN, PATHS, WRONG_HOSTS, WRONG_ORIGINS, Attack
+from benchmarks.raw_client import receive, say, send
+from geosacs_drake.console.access import Access
 from geosacs_drake.console.control import Control
 from geosacs_drake.console.server import ConsoleServer
 
@@ -23,95 +22,24 @@ def server():
     server.stop()
 
 
-def ask(server, path, *, host=None, origin=None, method="GET", upgrade=False, more=""):
+def ask(server, path, **request):
     """Status line and connection of a request; nothing of a browser's."""
-    connection = socket.create_connection(("127.0.0.1", server.port), timeout=20)
-    lines = [f"{method} {path} HTTP/1.1"]
-    if host is not None:
-        lines.append(f"Host: {host}")
-    if origin is not None:
-        lines.append(f"Origin: {origin}")
-    if upgrade:
-        key = base64.b64encode(os.urandom(16)).decode()
-        lines += ["Upgrade: websocket", "Connection: Upgrade", f"Sec-WebSocket-Key: {key}", "Sec-WebSocket-Version: 13"]
-    connection.sendall(("\r\n".join(lines) + "\r\n" + more + "\r\n").encode())
-    answer = b""
-    while b"\r\n\r\n" not in answer and (byte := connection.recv(1)):
-        answer += byte
-    return (int(answer.split()[1]) if answer else 0), connection
+    return raw_client.ask(server.port, path, **request)
 
 
 def own(server):
     return f"localhost:{server.port}"
 
 
-def send(connection, payload, opcode=1):
-    mask, size = os.urandom(4), len(payload)
-    head = bytes([0x80 | opcode])
-    head += (
-        bytes([0x80 | size])
-        if size < 126
-        else b"\xfe" + struct.pack(">H", size)
-        if size < 65536
-        else (b"\xff" + struct.pack(">Q", size))
-    )
-    connection.sendall(head + mask + bytes(b ^ mask[k % 4] for k, b in enumerate(payload)))
-
-
-def receive(connection):
-    """The next text, or None where the connection was closed."""
-    try:
-        head = connection.recv(2)
-        if len(head) < 2 or head[0] & 0x0F == 8:
-            return None
-        size = head[1]
-        if size == 126:
-            (size,) = struct.unpack(">H", connection.recv(2))
-        data = b""
-        while len(data) < size:
-            data += connection.recv(size - len(data))
-    except ConnectionResetError:
-        return None
-    return json.loads(data)
-
-
 def linked(server):
-    status, connection = ask(
-        server, f"/{server.access.token}/link", host=own(server), origin=f"http://{own(server)}", upgrade=True
-    )
-    assert status == 101
-    assert receive(connection)["type"] == "welcome"
-    return connection
-
-
-def say(connection, n, **message):
-    send(connection, json.dumps({"n": n, **message}).encode())
-
-
-PATHS = ("", "index.html", "main.js", "view/", "view/meshcat.js", "link", "view/socket")
-WRONG_HOSTS = (
-    "",
-    "evil.example",
-    "evil.example:{port}",
-    "localhost",
-    "localhost:1",
-    "127.0.0.1.evil:{port}",
-    "10.1.1.1:{port}",
-)
-WRONG_ORIGINS = (
-    "null",
-    "http://evil.example",
-    "https://localhost:{port}",
-    "http://localhost:1",
-    "http://127.0.0.1:{port}",
-)
+    return raw_client.linked(server.port, server.access.token)
 
 
 @pytest.mark.parametrize("path", PATHS)
 def test_wrong_hosts_origins_and_tokens_are_refused(server, path):
     token, upgrade = server.access.token, path.endswith(("link", "socket"))
     right = f"http://{own(server)}"
-    cases = [(token, host.format(port=server.port), right) for host in WRONG_HOSTS]
+    cases = [(token, host.format(port=server.port), right) for host in WRONG_HOSTS if host is not None]
     cases += [(token, own(server), origin.format(port=server.port)) for origin in WRONG_ORIGINS]
     cases += [(wrong, own(server), right) for wrong in ("", "x", token[:-1], token + "x", token.swapcase())]
     if upgrade:
@@ -153,29 +81,6 @@ def test_a_stick_arrives_clamped_and_is_gone_with_its_connection(server):
     assert server.control.situation().holder == ""
 
 
-BROKEN = (
-    b"", b"{", b"null", b"[]", b"{}", b'"drive"', b"\xff\xfe",
-    b'{"n": 0, "type": "drive"}',
-    b'{"n": 0, "type": "drive", "stick": [1]}',
-    b'{"n": 0, "type": "drive", "stick": [1, 2, 3]}',
-    b'{"n": 0, "type": "drive", "stick": [NaN, 0]}',
-    b'{"n": 0, "type": "drive", "stick": [Infinity, 0]}',
-    b'{"n": 0, "type": "drive", "stick": [1e999, 0]}',
-    b'{"n": 0, "type": "drive", "stick": ["a", 0]}',
-    b'{"n": 0, "type": "drive", "stick": [0, 0], "more": 1}',
-    b'{"n": -1, "type": "drive", "stick": [1, 0]}',
-    b'{"n": 0.5, "type": "drive", "stick": [1, 0]}',
-    b'{"type": "drive", "stick": [1, 0]}',
-    b'{"n": 0, "type": "press", "button": "fly"}',
-    b'{"n": 0, "type": "step", "direction": [1, 0], "mm": 1e9}',
-    b'{"n": 0, "type": "step", "direction": [1, 0], "mm": -1}',
-    b'{"n": 0, "type": "nothing"}',
-    b'{"n": 0, "t": "now", "type": "drive", "stick": [1, 0]}',
-    b"[" * 4000,
-    b'{"n": 0, "type": "drive", "stick": [1, 0], "x": "' + b"a" * 5000 + b'"}',
-)  # fmt: skip
-
-
 @pytest.mark.parametrize("payload", BROKEN, ids=range(len(BROKEN)))
 def test_a_broken_message_is_answered_400_and_ends_its_connection_alone(server, payload):
     other = linked(server)
@@ -197,24 +102,27 @@ def test_numbers_must_grow(server):
     assert not server.control.sample().joystick.any()
 
 
-def test_bytes_that_mean_nothing_move_nothing(server):
-    """The same for a minute is a line of `make acceptance`."""
-    rng, end = itertools.count(), time.monotonic() + 3.0
-    while time.monotonic() < end:
-        if next(rng) % 2:
-            with socket.create_connection(("127.0.0.1", server.port), timeout=20) as connection:
-                connection.sendall(os.urandom(300))
-        else:
-            connection = linked(server)
-            try:
-                for opcode in (1, 2, 9, 3, 11):
-                    send(connection, os.urandom(50), opcode)
-            except OSError:
-                pass
-            connection.close()
+def test_every_wrong_request_message_and_byte_is_refused_and_moves_nothing(server):
+    """Three seconds of it; `make acceptance` tries every combination, for a minute, on a run."""
+    attack = Attack(server.port, server.access.token)
+    attacker = threading.Thread(target=attack.run, args=(3.0,))
+    attacker.start()
+    while attacker.is_alive():
         assert not server.control.sample().joystick.any()
-    linked(server)
+        time.sleep(0.002)
+    assert attack.let_in == []
+    assert min(attack.tried[kind] for kind in ("requests", "messages", "bytes")) > 0
     assert not server.control.situation().person
+    connection = linked(server)
+    say(connection, 0, type="press", button="gripper")
+    wait_until(lambda: server.control.sample().joystick[2] == 1, "an honest press", 5)
+
+
+def test_an_attack_that_is_let_in_is_seen(server, monkeypatch):
+    monkeypatch.setattr(Access, "refusal", lambda *_, **__: "")
+    attack = Attack(server.port, server.access.token)
+    attack.run(0.5)
+    assert attack.let_in
 
 
 def test_another_machines_browser_is_welcome_only_where_it_was_asked_for(server):
