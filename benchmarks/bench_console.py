@@ -2,8 +2,8 @@
 
     make bench-console
 
-A person holds an arrow key for a moment and lets it go, again and again, while the robot is paused; then the page is
-closed in the middle of a push. Times are those of one machine's clock, of the page's events and of the run.
+A person holds an arrow key for a moment and lets it go, again and again; then the page is closed in the middle of a push.
+Another page, of a server without a robot, is hidden, frozen, stopped, closed and killed in mid-push. Times are those of one machine's clock, of the page's events and of the run.
 """
 
 from __future__ import annotations
@@ -23,10 +23,11 @@ from pathlib import Path
 
 import numpy as np
 
+from benchmarks.let_go import all_ways
+from benchmarks.own_browser import ARGS
 from benchmarks.table import Row, print_table, write_csv
 
 OUTPUT = Path(__file__).parents[1] / "build" / "bench-console.csv"
-ARGS = ["--no-sandbox", "--enable-unsafe-swiftshader", "--use-angle=swiftshader", "--ignore-gpu-blocklist"]
 WATCH = """() => {
     const now = () => (performance.timeOrigin + performance.now()) / 1000;
     window.noted = {down: [], up: [], steering: [], drawn: []};
@@ -79,7 +80,7 @@ def measure(presses: int, arguments: list[str]) -> dict[str, np.ndarray]:
         address = next(m.group(1) for line in run.stdout if (m := re.search(r"at (http://\S+)", line)))
         with sync_playwright() as playwright:
             browser = playwright.chromium.launch(
-                executable_path=shutil.which("chromium") or playwright.chromium.executable_path, args=ARGS
+                executable_path=shutil.which("chromium") or playwright.chromium.executable_path, args=list(ARGS)
             )
             page = browser.new_page(viewport={"width": 1280, "height": 800})
             page.goto(address)
@@ -132,10 +133,13 @@ def main() -> None:
     """Measure, print, write."""
     parser = argparse.ArgumentParser()
     parser.add_argument("--presses", type=int, default=40)
+    parser.add_argument("--repeats", type=int, default=5, help="of each way in which a page goes")
     parser.add_argument("--items", default="soft")
     options = parser.parse_args()
     rows = []
-    for name, values in measure(options.presses, ["--items", options.items]).items():
+    measured = measure(options.presses, ["--items", options.items])
+    measured |= {f"{words} to stick at zero": times for words, times in all_ways(options.repeats).items()}
+    for name, values in measured.items():
         unit = "1" if name == "real-time factor" else "ms"
         values = values[np.isfinite(values)]
         shown = {"p50": 50, "p95": 95, "max": 100} if len(values) > 1 else {"value": 50}
