@@ -3,7 +3,8 @@
     make bench-console
 
 A person holds an arrow key for a moment and lets it go, again and again; then the page is closed in the middle of a push.
-Another page, of a server without a robot, is hidden, frozen, stopped, closed and killed in mid-push. Times are those of one machine's clock, of the page's events and of the run.
+Another page, of a server without a robot, is hidden, frozen, stopped, closed and killed in mid-push. Times are those of
+one machine's clock, of the page's events and of the run.
 """
 
 from __future__ import annotations

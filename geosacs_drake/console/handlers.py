@@ -191,6 +191,11 @@ class LinkSocket(_Socket):
 class MeshcatSocket(_Socket):
     """What Meshcat tells its page, no faster than it draws; nothing goes the other way but numbers of pictures."""
 
+    @property
+    def ping_interval(self) -> None:
+        """Not asked whether it is there: a page that draws for seconds answers late, and would begin anew."""
+        return
+
     def open(self, *_: str, **__: str) -> None:
         self.set_nodelay(True)
         self.server.open.add(self)

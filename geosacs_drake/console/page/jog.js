@@ -28,6 +28,7 @@ export class Jog extends Stick {
     // The lift as a stick of one direction, for ways and switches.
     const lift = new EventTarget();
     lift.hold = (source, x, z) => this.lift(z);
+    lift.wake = () => this.wake();
     lift.step = (x, z) => this.sendStep([0, 0], z);
     this.lifts = new Ways(lift, "lift");
     this.addEventListener("centre", () => lift.dispatchEvent(new Event("centre")));

@@ -102,7 +102,9 @@ switches();
 document.addEventListener("click", (event) => {
   if (event.detail > 0) event.target.closest?.("button, summary")?.blur();
 });
-byId("frame").addEventListener("load", () => keys.listen(byId("frame").contentWindow));
+// As in main.js: whichever of the two scripts comes second.
+window.listenToKeys = (target) => keys.listen(target);
+keys.listen(byId("frame").contentWindow);
 
 function meet(detail) {
   about = detail;
