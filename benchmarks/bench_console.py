@@ -2,7 +2,7 @@
 
     make bench-console
 
-A person holds an arrow key for a moment and lets it go, again and again; then the page is closed in the middle of a push.
+A person holds an arrow key for a moment and lets it go, again and again; then the page is closed in mid-push.
 Another page, of a server without a robot, is hidden, frozen, stopped, closed and killed in mid-push. Times are those of
 one machine's clock, of the page's events and of the run.
 """
@@ -24,8 +24,9 @@ from pathlib import Path
 
 import numpy as np
 
-from benchmarks.let_go import all_ways
-from benchmarks.own_browser import ARGS
+from benchmarks.console.attacked_run import attacked
+from benchmarks.console.let_go import all_ways
+from benchmarks.console.own_browser import ARGS
 from benchmarks.table import Row, print_table, write_csv
 
 OUTPUT = Path(__file__).parents[1] / "build" / "bench-console.csv"
@@ -69,7 +70,7 @@ def measure(presses: int, arguments: list[str]) -> dict[str, np.ndarray]:
             sys.executable,
             "-u",
             "-m",
-            "benchmarks.console_run",
+            "benchmarks.console.noted_run",
             str(notes),
             "laundry",
             "--port",
@@ -134,6 +135,7 @@ def main() -> None:
     """Measure, print, write."""
     parser = argparse.ArgumentParser()
     parser.add_argument("--presses", type=int, default=40)
+    parser.add_argument("--attack", type=float, default=60.0, help="seconds of an attack from outside")
     parser.add_argument("--repeats", type=int, default=5, help="of each way in which a page goes")
     parser.add_argument("--items", default="soft")
     options = parser.parse_args()
@@ -147,6 +149,8 @@ def main() -> None:
         rows += [
             Row("console", name, k, float(np.percentile(values, q)), unit) for k, q in shown.items() if len(values)
         ]
+    for name, value in attacked(options.attack).items():
+        rows.append(Row("console, attacked", name, "value", value, "mm" if name == "moved" else "1"))
     print_table(rows)
     write_csv(OUTPUT, rows)
 

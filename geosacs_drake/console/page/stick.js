@@ -3,7 +3,7 @@
 import { settings } from "./settings.js";
 
 const REPEAT_MS = 50;
-const ASLEEP_MS = 1000;  // who was stopped for so long does not know what became of the hands
+const ASLEEP_MS = 3000;  // who was stopped for so long does not know what became of the hands
 
 export class Stick extends EventTarget {
   constructor(link) {

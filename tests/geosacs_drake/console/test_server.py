@@ -6,9 +6,9 @@ import time
 import pytest
 from waiting import wait_until
 
-from benchmarks import raw_client
-from benchmarks.console_attack import BROKEN, PATHS, WRONG_HOSTS, WRONG_ORIGINS, Attack
-from benchmarks.raw_client import receive, say, send
+from benchmarks.console import raw_client
+from benchmarks.console.attack import BROKEN, PATHS, WRONG_HOSTS, WRONG_ORIGINS, Attack
+from benchmarks.console.raw_client import receive, say, send
 from geosacs_drake.console.access import Access
 from geosacs_drake.console.control import Control
 from geosacs_drake.console.server import ConsoleServer
@@ -103,7 +103,7 @@ def test_numbers_must_grow(server):
 
 
 def test_every_wrong_request_message_and_byte_is_refused_and_moves_nothing(server):
-    """Three seconds of it; `make acceptance` tries every combination, for a minute, on a run."""
+    """Three seconds of it; `make bench-console` tries every combination, for a minute, on a run."""
     attack = Attack(server.port, server.access.token)
     attacker = threading.Thread(target=attack.run, args=(3.0,))
     attacker.start()

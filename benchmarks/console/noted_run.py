@@ -1,6 +1,6 @@
 """A run with its console that notes when what happened, for `bench_console`.
 
-python -m benchmarks.console_run NOTES.json TASK [OPTIONS]
+python -m benchmarks.console.noted_run NOTES.json TASK [OPTIONS]
 """
 
 from __future__ import annotations

@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from benchmarks.own_browser import OwnBrowser, own_browser
+from benchmarks.console.own_browser import OwnBrowser, own_browser
 from canal.navigation.joystick import GRIPPER, JOYSTICK_PERIOD
 from geosacs_drake.console.control import Control
 from geosacs_drake.console.server import ConsoleServer

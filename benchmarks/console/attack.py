@@ -17,7 +17,7 @@ from collections.abc import Iterator
 from contextlib import suppress
 from dataclasses import dataclass
 
-from benchmarks.raw_client import BINARY, PING, TEXT, ask, linked, receive, send
+from benchmarks.console.raw_client import BINARY, PING, TEXT, ask, linked, receive, send
 
 PATHS = ("", "index.html", "main.js", "view/", "view/meshcat.js", "link", "view/socket")
 METHODS = ("GET", "POST", "PUT", "DELETE", "OPTIONS", "HEAD", "FLY")
