@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 import re
 import signal
 import subprocess
@@ -16,7 +15,7 @@ from benchmarks.acceptance.commands import empty_folder, log_of
 from benchmarks.canal_quality import ROOT
 from benchmarks.console.attack import Attack
 from benchmarks.console.raw_client import linked, say
-from canal.navigation import FIELD_NAMES
+from canal.navigation.joystick import START
 
 STARTED_S = 3.0
 """[s] That the robot travels, before it is paused and attacked."""
@@ -40,16 +39,16 @@ def attacked(seconds: float) -> dict[str, float]:
         signals = log_of(log) if log.exists() else {}
         figures: dict[str, float] = {"let in": float(len(attack.let_in)), "tried": float(sum(attack.tried.values()))}
         if signals and summary.exists() and status == 1:
-            # From a second after the pause on; the joystick is logged at a rate of its own.
-            paused = signals["navigation_state"][:, FIELD_NAMES.index("paused")] > 0
-            first = int(np.argmax(paused)) + 60
-            tool = signals["X_BT_desired"][first:, :3]
-            stick = signals["joystick"][math.ceil(first / len(paused) * len(signals["joystick"])) :]
-            if paused.any() and len(tool) and len(stick):
+            pressed = np.flatnonzero(np.diff(signals["joystick"][:, START], prepend=0.0) > 0)
+            print("Start was pressed at", signals["joystick_time"][pressed])
+            if len(pressed) == 2:  # and no third one
+                paused = signals["joystick_time"][pressed[1]] + 1.0
+                tool = signals["X_BT_desired"][signals["time"] > paused, :3]
+                stick = signals["joystick"][signals["joystick_time"] > paused]
                 figures |= {
-                    "moved": 1000 * float(np.linalg.norm(tool - tool[0], axis=1).max()),
+                    "moved": 1000 * float(np.ptp(tool, axis=0).max()),
                     "samples": float(np.any(stick != 0, axis=1).sum()),
-                    "goes on": 1.0,
+                    "goes on [s]": float(signals["time"][-1] - paused),
                 }
     return figures
 

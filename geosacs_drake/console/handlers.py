@@ -157,7 +157,14 @@ class _Socket(_Guarded, WebSocketHandler):
     def say(self, message: str | bytes) -> None:
         """Send what can be sent."""
         with contextlib.suppress(WebSocketClosedError):
-            self.write_message(message, binary=isinstance(message, bytes))
+            sent = asyncio.ensure_future(self.write_message(message, binary=isinstance(message, bytes)))
+            sent.add_done_callback(_hear)
+
+
+def _hear(sent: asyncio.Future[None]) -> None:
+    """Who goes while something is sent fills no terminal."""
+    if not sent.cancelled():
+        sent.exception()
 
 
 class LinkSocket(_Socket):
