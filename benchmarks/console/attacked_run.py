@@ -27,9 +27,9 @@ def attacked(seconds: float) -> dict[str, float]:
         log, summary = folder / "log.npz", folder / "summary.json"
         with _Run(folder, "--log", str(log), "--summary", str(summary)) as (process, port, token):
             with linked(port, token) as page:
-                say(page, 0, type="press", button="start")
+                say(page, 0, t=1000 * time.monotonic(), type="press", button="start")
                 time.sleep(STARTED_S)
-                say(page, 1, type="press", button="start")
+                say(page, 1, t=1000 * time.monotonic(), type="press", button="start")
                 time.sleep(1.0)
             attack = Attack(port, token)
             attack.run(seconds)
