@@ -111,8 +111,9 @@ def _run(
     )
     for notice in system.notices:
         print(notice, file=sys.stderr, flush=True)
-    report = None if console is None else console.report(system, found.canal, scenario)
     if console is not None:
+        console.report(system, found.canal, scenario)
+        console.show_gripper(system.station, scenario, found.seed)
         print(f"steer, or watch, at {console.address}", flush=True)
         if outside := console.server.network_address:
             print(
@@ -135,8 +136,8 @@ def _run(
             rate=options.rate,
             asked_to_end=lambda: interrupts.asked,
             report=bar.show,
-            watch=(lambda root: None) if report is None else report,
-            wait=(lambda: None) if console is None else lambda: console.wait(lambda: interrupts.asked),
+            watch=(lambda root: None) if console is None else console.look,
+            wait=lambda root: None if console is None else console.wait(root, lambda: interrupts.asked),
         )
     interrupts.begin(Phase.WRITING)
     return finish(

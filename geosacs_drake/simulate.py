@@ -50,7 +50,7 @@ def simulate(
     asked_to_end: Callable[[], bool] = lambda: False,
     report: Callable[[Progress], None] = lambda progress: None,
     watch: Callable[[Context], None] = lambda context: None,
-    wait: Callable[[], None] = lambda: None,
+    wait: Callable[[Context], None] = lambda context: None,
 ) -> RunResult:
     """Simulate until the task is done, given up, interrupted or out of time.
 
@@ -66,7 +66,7 @@ def simulate(
         asked_to_end: looked at after each step of the plant.
         report: called after each half second.
         watch: called after each step of the plant with the diagram's context, to measure what no port tells.
-        wait: called once everything stands at its start, and is seen; the time begins when it returns.
+        wait: called with it once everything stands at its start, and is seen; the time begins when it returns.
 
     Returns:
         What happened; a simulation that something inside it ends says so in `failure`, and keeps what it had.
@@ -91,7 +91,7 @@ def simulate(
         system.take_first_measurements(simulator.get_mutable_context())
         simulator.Initialize()
         watch(root)
-        wait()
+        wait(root)
         simulator.ResetStatistics()  # the clock on the wall begins now
         gc.freeze()  # what is built stays: no collection looks through it again
         while root.get_time() < duration - 1e-9:

@@ -12,12 +12,16 @@ from typing import Any
 
 from pydrake.geometry import Meshcat
 from pydrake.math import RollPitchYaw
+from pydrake.systems.framework import Context
 
 from canal.navigation.joystick import JOYSTICK_PERIOD
 from canal.surface import CanalSurface
 from diagrams.announcements import Announcement
 from diagrams.scenario import Scenario
+from diagrams.scene.world import World
 from diagrams.shared_autonomy import SharedAutonomy
+from diagrams.station.lio_station import LioStation
+from diagrams.view.gripper_camera import GripperCamera, can_render
 from geosacs_drake.console.control import Control
 from geosacs_drake.console.link import Answers
 from geosacs_drake.console.mapping_choice import MappingChoice, chosen_view
@@ -66,6 +70,8 @@ class Console:
         self._person = person
         self._standing = ""
         self._said = ""
+        self._report: Callable[[Context], None] = lambda root: None
+        self._camera: GripperCamera | None = None
         self._mapping, self._seat = "axes", "front"
         self.server.start()
 
@@ -111,8 +117,8 @@ class Console:
         self.answers.mapping = MappingChoice(canal, chosen_view(mapping, seat))
         return self.answers.mapping
 
-    def report(self, system: SharedAutonomy, canal: CanalSurface, scenario: Scenario) -> StatusReporter:
-        """Tell the pages of a run; call what is returned after each step of it.
+    def report(self, system: SharedAutonomy, canal: CanalSurface, scenario: Scenario) -> None:
+        """Tell the pages of a run, at each `look`.
 
         Args:
             system: the run's diagram.
@@ -133,7 +139,7 @@ class Console:
             "bindings": self.answers.bindings.all(),
         }
         self.server.introduce(about)
-        return StatusReporter(
+        self._report = StatusReporter(
             system=system,
             canal=canal,
             item_names=[item.name for item in scenario.items],
@@ -142,10 +148,39 @@ class Console:
             standing=self.standing,
         )
 
-    def wait(self, asked_to_end: Callable[[], bool]) -> None:
-        """Wait until somebody says Start or Watch, or nobody is there to say it."""
+    def show_gripper(self, station: LioStation, world: World, seed: int) -> None:
+        """Let pages look through the gripper's camera, where this machine renders pictures.
+
+        Args:
+            station: of the run.
+            world: that it was built from.
+            seed: likewise.
+        """
+        self.answers.shows_pictures = can_render()
+        if self.answers.shows_pictures:
+            self._camera = GripperCamera(station, world, seed, self.server)
+
+    def look(self, root: Context) -> None:
+        """Tell the pages how the run stands; called after each step of it.
+
+        Args:
+            root: the diagram's context.
+        """
+        self._report(root)
+        if self._camera is not None:
+            self._camera.look(root)
+
+    def wait(self, root: Context, asked_to_end: Callable[[], bool]) -> None:
+        """Wait until somebody says Start or Watch, or nobody is there to say it.
+
+        Args:
+            root: the diagram's context.
+            asked_to_end: whether the run is to end.
+        """
         begin = time.monotonic()
         while not self.control.wait_for_beginning(LOOK_S) and not asked_to_end():
+            if self._camera is not None:
+                self._camera.look(root)
             waited = time.monotonic() - begin
             if not self._person and not self.server.pages and waited > WAIT_FOR_PAGE_S:
                 self.control.watch()

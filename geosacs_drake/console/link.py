@@ -14,6 +14,7 @@ from geosacs_drake.console.messages import (
     Bindings,
     Drive,
     Jog,
+    Look,
     Press,
     Say,
     Seen,
@@ -22,19 +23,23 @@ from geosacs_drake.console.messages import (
     View,
 )
 
+NO_PICTURES = "There is no camera on the gripper here: it needs the system's libEGL."
+"""What a page is told that looks in vain."""
+
 
 class Link:
     """What is known of a page.
 
     Attributes:
         last: number of its last message.
+        looks: whether it waits for a picture of the gripper's camera.
         delay_ms: how long a status takes to be seen there, there and back.
     """
 
     def __init__(self, name: str, control: Control, answers: Answers) -> None:
         """A link of the page `name`; what is no command of the stick goes to `answers`."""
         self.name, self.control, self.answers = name, control, answers
-        self.last = -1
+        self.last, self.looks = -1, False
         self.delay_ms = math.nan
         self._ahead = math.inf
         self._told: dict[int, float] = {}
@@ -87,6 +92,9 @@ class Link:
                 if number in self._told:
                     self.delay_ms = 1000 * (now_s - self._told.pop(number))
                 return ""
+            case Look():
+                self.looks = self.answers.shows_pictures
+                return "" if self.looks else NO_PICTURES
             case View() if control.situation().holder not in ("", self.name):
                 return ""
             case View():
@@ -105,6 +113,8 @@ class Answers:
 
     full_stick_mm: float = 20.0 / 150.0 * 50.0
     """What a full stick moves in one sample of 20 Hz [mm]."""
+    shows_pictures: bool = False
+    """Whether the gripper's camera is there."""
     mapping: MappingChoice | None = None
     """Gets the pages' choices."""
 

@@ -97,6 +97,13 @@ class Bindings(Message):
     """A control for each name of a direction or a button."""
 
 
+class Look(Message):
+    """A page waits for a picture of the gripper's camera: one."""
+
+    type: Literal["look"]
+    """Tells it apart."""
+
+
 class Jog(Message):
     """How the tool is moved while it is taught: velocity and the way its nose tips, in the base frame, and its spin;
     said again while it is held, or once for a step."""
@@ -118,7 +125,9 @@ class Teach(Message):
     """What is to be done."""
 
 
-AnyMessage = Annotated[Drive | Step | Press | Say | View | Seen | Bindings | Jog | Teach, Field(discriminator="type")]
+AnyMessage = Annotated[
+    Drive | Step | Press | Say | View | Seen | Bindings | Look | Jog | Teach, Field(discriminator="type")
+]
 """What a page may send, told apart by its type."""
 _ADAPTER: TypeAdapter[AnyMessage] = TypeAdapter(AnyMessage)
 

@@ -122,6 +122,19 @@ class ConsoleServer:
             self._status = status
             self._number += 1
 
+    def picture_wanted(self) -> bool:
+        """Whether a page waits for a picture of the gripper's camera."""
+        return any(page.link.looks for page in list(self.links.values()))
+
+    def show_picture(self, jpeg: bytes) -> None:
+        """What the gripper's camera sees, for the pages that wait for it.
+
+        Args:
+            jpeg: the file's bytes.
+        """
+        if self._loop is not None and self._thread.is_alive():
+            self._loop.call_soon_threadsafe(self._send_picture, jpeg)
+
     def tell(self, event: dict[str, Any]) -> None:
         """Something has happened: it goes to the pages' history."""
         with self._lock:
@@ -213,6 +226,12 @@ class ConsoleServer:
             page.link.tell(number, now)
             delay = page.link.delay_ms
             page.say(f'{text}, "delay_ms": {"null" if math.isnan(delay) else round(delay, 1)}}}')
+
+    def _send_picture(self, jpeg: bytes) -> None:
+        for page in list(self.links.values()):
+            if page.link.looks:
+                page.link.looks = False
+                page.say(jpeg)
 
     def _from_thread(self, message: dict[str, Any]) -> None:
         if self._loop is not None and self._thread.is_alive():

@@ -8,10 +8,12 @@ from pydrake.math import RollPitchYaw
 from pydrake.systems.framework import Context
 
 from canal.rows import length_along
+from diagrams.scene.world import World
 from diagrams.teach.path import TaughtPath
 from diagrams.teaching import Teaching
 from diagrams.view.canal_drawing import CanalDrawing
 from diagrams.view.canal_meshes import tube
+from diagrams.view.gripper_camera import GripperCamera, can_render
 from geosacs_drake.console.console import open_page
 from geosacs_drake.console.mapping_choice import RIGHT_T, UP_T
 from geosacs_drake.console.server import ConsoleServer
@@ -73,13 +75,17 @@ class TeachPage:
         if not self._again:
             open_page(self.address)
 
-    def begin(self, teaching: Teaching, lesson: Lesson) -> None:
+    def begin(self, teaching: Teaching, lesson: Lesson, world: World, seed: int) -> None:
         """Show a lesson.
 
         Args:
             teaching: its diagram.
             lesson: what it comes to.
+            world: that its station was built from.
+            seed: likewise.
         """
+        self.server.answers.shows_pictures = can_render()
+        self._camera = GripperCamera(teaching.station, world, seed, self.server) if can_render() else None
         self._teaching, self._lesson = teaching, lesson
         self._reporter = TeachReporter(teaching, lesson)
         X_WB = teaching.station.X_WB
@@ -102,6 +108,8 @@ class TeachPage:
             root: the diagram's context.
             busy: what the lesson is doing instead of moving the robot.
         """
+        if self._camera is not None:
+            self._camera.look(root)
         if not self._reporter.due() and not busy:
             return
         self.server.show(self._reporter.status(root, stopped=self._control.situation().stopped, busy=busy))

@@ -8,7 +8,6 @@ from dataclasses import dataclass, field
 from functools import partial
 from typing import Any, NoReturn
 
-from pydrake.geometry import Meshcat
 from pydrake.systems.analysis import Simulator
 
 from canal.navigation.joystick import JOYSTICK_PERIOD
@@ -16,6 +15,7 @@ from diagrams.ik.joint_pace import unhurried
 from diagrams.ik.start_posture import find_start_posture
 from diagrams.scenario import load_scenario, with_items
 from diagrams.scene.layout import base_pose
+from diagrams.scene.world import World
 from diagrams.station.lio_ik import make_lio_solver
 from diagrams.station.lio_station import START_POSTURE
 from diagrams.station.sleep import sleep_manager
@@ -72,9 +72,13 @@ def run(options: TeachOptions, prog: str = PROG) -> ExitStatus:
         solver, own = make_lio_solver(scenario, scenario.ik), prepare_canal(scenario, RunOptions())
         start = find_start_posture(solver, unhurried(own), preferred=START_POSTURE)
         teaching = build_teaching(
-            scenario=scenario, read=hand.jog_sample, q_start=start.q, seed=options.seed, meshcat=meshcat
+            scenario=scenario,
+            read=hand.jog_sample,
+            q_start=start.q,
+            seed=options.seed,
+            meshcat=meshcat,
         )
-        going = _Going(teaching, lesson, hand, meshcat, page, lambda: interrupts.asked, options.rate)
+        going = _Going(teaching, lesson, hand, page, lambda: interrupts.asked, options.rate, scenario, options.seed)
         status = status_of(lambda: _go(going, interrupts), prog)
         if page is not None:
             page.close()
@@ -90,10 +94,11 @@ class _Going:
     teaching: Teaching
     lesson: Lesson
     hand: ScriptedHand | TeachControl
-    meshcat: Meshcat | None
     page: TeachPage | None
     asked_to_end: Callable[[], bool]
     rate: float
+    world: World
+    seed: int
     travel: list[str] = field(default_factory=list)
     """The command that comes next."""
 
@@ -107,7 +112,7 @@ def _go(going: _Going, interrupts: Interrupts) -> ExitStatus:
     root = simulator.get_mutable_context()
     beginning = root.Clone()
     if page is not None:
-        page.begin(teaching, going.lesson)
+        page.begin(teaching, going.lesson, going.world, going.seed)
         print(f"teach at {page.address}", flush=True)
         if outside := page.server.network_address:
             print(

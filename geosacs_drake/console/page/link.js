@@ -20,8 +20,12 @@ export class Link extends EventTarget {
     address.protocol = address.protocol.replace("http", "ws");
     const socket = new WebSocket(address);
     this.socket = socket;
+    socket.binaryType = "arraybuffer";  // pictures of the gripper's camera
     socket.onopen = () => { this.n = 0; };
-    socket.onmessage = ({ data }) => this.receive(JSON.parse(data));
+    socket.onmessage = ({ data }) => {
+      if (typeof data === "string") this.receive(JSON.parse(data));
+      else this.tell("picture", data);
+    };
     socket.onclose = () => { if (this.socket === socket) this.lose(); };
   }
 

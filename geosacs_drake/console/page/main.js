@@ -4,6 +4,7 @@ import { Camera } from "./camera.js";
 import { Devices } from "./devices.js";
 import { Disk } from "./disk.js";
 import { showEnd } from "./end.js";
+import { Eye } from "./eye.js";
 import { Gamepads } from "./gamepads.js";
 import { Keys } from "./keys.js";
 import { Link } from "./link.js";
@@ -20,6 +21,7 @@ const link = new Link();
 const stick = new Stick(link);
 const disk = new Disk(byId("disk"), byId("disk-words"));
 const camera = new Camera(byId("frame"), byId("view"));
+const eye = new Eye(link, byId("eye"), byId("eye-figure"));
 let status = null, about = {};
 
 const press = (button) => {
@@ -46,11 +48,12 @@ byId("settings").addEventListener("click", () => {
 });
 
 // Which way is right and up: told whenever it changes, or when this page comes to steer.
-const tellView = () => link.send({ type: "view", mapping: settings.mapping, seat: settings.seat, follow: settings.view === "gripper", ...camera.basis });
+const follows = () => settings.view === "gripper" || eye.chosen;
+const tellView = () => link.send({ type: "view", mapping: settings.mapping, seat: settings.seat, follow: follows(), ...camera.basis });
 let mapped = "";
 onChange(() => {
   gamepads.switched = scanning.on ? (name, down) => scanning.gamepad(name, down) : null;
-  const now = `${settings.mapping} ${settings.seat} ${settings.view}`;
+  const now = `${settings.mapping} ${settings.seat} ${settings.view} ${eye.chosen}`;
   if (now === mapped) return;
   mapped = now;
   if (settings.view === "seat") camera.look();

@@ -14,6 +14,7 @@ export const DEFAULTS = {
   scanning: "off",      // off, one, two
   dwell_s: 1.5,
   view: "room",         // see camera.js
+  eye: "off",           // off, inset, large: the gripper's camera
 };
 
 export const settings = { ...DEFAULTS, ...stored() };

@@ -2,6 +2,7 @@
 
 import { Camera } from "./camera.js";
 import { Devices } from "./devices.js";
+import { Eye } from "./eye.js";
 import { Gamepads } from "./gamepads.js";
 import { Jog, holds } from "./jog.js";
 import { Keys } from "./keys.js";
@@ -18,8 +19,9 @@ const LESSON = ["mode", "step_mm", "sensitivity", "seat", "dead_zone", "invert_x
 
 const link = new Link();
 const camera = new Camera(byId("frame"), byId("view"));
+const eye = new Eye(link, byId("eye"), byId("eye-figure"));
 let status = null, about = {};
-const jog = new Jog(link, () => (settings.view === "gripper" ? ofGripper() : null) ?? camera.basis ?? { right: [0, 1, 0], up: [0, 0, 1] });
+const jog = new Jog(link, () => (settings.view === "gripper" || eye.chosen ? ofGripper() : null) ?? camera.basis ?? { right: [0, 1, 0], up: [0, 0, 1] });
 
 // What is right and up in the picture of the camera on the gripper.
 function ofGripper() {
