@@ -5,9 +5,10 @@ import pytest
 from hard_demonstrations import hard_demonstrations
 
 from canal.learning import splines
-from canal.learning.alignment import align, evenly_moving, sample
+from canal.learning.alignment import align, evenly_moving
 from canal.learning.splines import fit_spline, knots_every
 from canal.learning.trimming import ROTATION_LENGTH_M, trim
+from canal.rows import rows_between
 
 KNOTS = knots_every(0.1)
 U = np.linspace(0.0, 1.0, 201)
@@ -56,8 +57,8 @@ def test_the_common_parameter_is_even_in_what_all_move(n):
         squared = np.zeros(200)
         for motion, warp in zip(motions, warps, strict=True):
             moved, turned = (
-                np.diff(sample(motion.position, warp), axis=0),
-                np.diff(sample(motion.orientation, warp), axis=0),
+                np.diff(rows_between(motion.position, warp), axis=0),
+                np.diff(rows_between(motion.orientation, warp), axis=0),
             )
             squared += np.sum(moved**2, axis=1) + (2 * ROTATION_LENGTH_M) ** 2 * np.sum(turned**2, axis=1)
         return np.sqrt(squared)
