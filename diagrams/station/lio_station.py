@@ -22,7 +22,7 @@ from diagrams.station.item_sensor import ItemSensor
 from diagrams.station.lio_arm import arm_joints, arm_speeds
 from diagrams.station.lio_drive import ARM, DAMPING, STIFFNESS, LioDrive
 from diagrams.station.lio_sensors import LioSensor
-from diagrams.station.sleeping_arm import Standing, switch_command
+from diagrams.station.sleeping_arm import Standing
 
 START_POSTURE = np.array([-1.62113, -1.19688, 1.27447, 0.02532, 1.48154, -0.05674])
 """[rad] (docs/method.md, 6)."""
@@ -87,9 +87,9 @@ class LioStation(Diagram):
         self.contact_pairs: list[str] = touch.contact_pairs
         self.robot_bodies: list[str] = touch.robot_bodies
 
-        command = switch_command(builder, standing, drive.GetOutputPort("actuator_state"))
+        builder.Connect(drive.GetOutputPort("actuator_state"), standing.GetInputPort("actuator_state"))
         builder.Connect(plant.get_contact_results_output_port(), standing.GetInputPort("contact_results"))
-        builder.Connect(command, plant.get_desired_state_input_port(lio))
+        builder.Connect(standing.GetOutputPort("actuator_state"), plant.get_desired_state_input_port(lio))
         for system in (sensor, drive):
             builder.Connect(plant.get_state_output_port(lio), system.GetInputPort("lio_state"))
         poses, query = plant.get_body_poses_output_port(), scene_graph.get_query_output_port()

@@ -13,16 +13,13 @@ import numpy as np
 from pydrake.common.value import AbstractValue, Value
 from pydrake.multibody.plant import ContactResults, MultibodyPlant
 from pydrake.multibody.tree import ModelInstanceIndex
-from pydrake.systems.framework import BasicVector, Context, DiagramBuilder, InputPortIndex, LeafSystem, OutputPort
-from pydrake.systems.primitives import PortSwitch
+from pydrake.systems.framework import BasicVector, Context, LeafSystem
 
 STANDS = 0.5
 """[s] A command that has not changed for so long is one to stand still: some twenty time constants of the drives."""
 ARM_STILL = 2e-3
 """[rad/s] An arm that nobody commands and that is no faster than this stands. One that presses on a table with 360 N
 creeps with 0.5 to 0.8 mrad/s; at its tool this is as much as `sleeping_item.STILL`."""
-DRIVES, KEPT = InputPortIndex(1), InputPortIndex(2)
-"""Of the switch in the path of the plant's command, whose port 0 selects."""
 AWAKE, WAKING, ASLEEP, CALLED = 0.0, 1.0, 2.0, 3.0
 """Awake; awake since the last step of the plant; asleep; asleep and told something else."""
 
@@ -31,16 +28,15 @@ class Standing(LeafSystem):
     """Knows for how long the drives' command has been the same, and keeps what touched the arm while it sleeps.
 
     ```
-      desired_state (n) → ┌──────────┐ → kept_actuator_state (m)
-    gripper_command (1) → │ Standing │ → source
-     actuator_state (m) → │          │ → contact_results
-     contact_results    → └──────────┘ → stage (1)
+      desired_state (n) → ┌──────────┐ → actuator_state (m)
+    gripper_command (1) → │ Standing │ → contact_results
+     actuator_state (m) → │          │ → stage (1)
+     contact_results    → └──────────┘
     ```
 
-    `source` selects the plant's command at a `PortSwitch` (see `switch_command`): the drives' own, or the one that was
-    kept when the arm fell asleep. Drake computes no force between bodies that are locked, so while the arm sleeps, and
-    until the plant has made the first step after it woke, `contact_results` are those from before: what presses,
-    presses on. The drives are not asked then: their command can change only after what they are told
+    The drives' command and the contacts go through. Drake computes no force between bodies that are locked, so while
+    the arm sleeps, and until the plant has made the first step after it woke, `contact_results` are those from before:
+    what presses, presses on. The drives are not asked then: their command can change only after what they are told
     (`desired_state`, `gripper_command`), and that changes at most once a tick, not with every step of the plant.
     """
 
@@ -53,16 +49,15 @@ class Standing(LeafSystem):
         )
         self._command = self.DeclareVectorInputPort("actuator_state", actuated)
         self._contacts = self.DeclareAbstractInputPort("contact_results", Value[ContactResults]())
-        self._stage = self.DeclareDiscreteState(1)
-        # The drives' command when the stage was entered, and which one the plant is given.
-        self._kept = self.DeclareDiscreteState(actuated)
-        self._source = self.DeclareAbstractState(Value[InputPortIndex](DRIVES))
+        # The stage, then the drives' command when it was entered.
+        self._stage = self.DeclareDiscreteState(1 + actuated)
         # What it was told last, the last command, and since when both have been given [s].
         self._last = self.DeclareDiscreteState(np.full(desired + 1 + actuated + 1, np.nan))
         self._held = self.DeclareAbstractState(Value[ContactResults]())
+        # The command depends on the stage, though its value does not: what Drake has cached of the drives' constraints
+        # while the joints were free is not to be met again when they are locked (it ends the process, `CalcActuation`).
         stage = self.discrete_state_ticket(self._stage)
-        self.DeclareStateOutputPort("kept_actuator_state", self._kept)
-        self.DeclareStateOutputPort("source", self._source)
+        self.DeclareVectorOutputPort("actuator_state", actuated, self._pass_command, {self._command.ticket(), stage})
         # A port, so that Drake knows without asking Python that nothing new was told.
         told = {port.ticket() for port in self._told} | {self.discrete_state_ticket(self._last), stage}
         self._calling = self.DeclareVectorOutputPort("stage", 1, self._calc_stage, told)
@@ -74,6 +69,10 @@ class Standing(LeafSystem):
             calc=lambda context, output: me()._pass_contacts(context, output),  # type: ignore[union-attr]
             prerequisites_of_calc={self._contacts.ticket(), stage, self.abstract_state_ticket(self._held)},
         )
+
+    def _pass_command(self, context: Context, output: BasicVector) -> None:
+        stage = context.get_discrete_state(self._stage).value()
+        output.set_value(stage[1:] if stage.item(0) == ASLEEP else self._command.Eval(context))
 
     def _calc_stage(self, context: Context, output: BasicVector) -> None:
         stage = context.get_discrete_state(self._stage).value().item(0)
@@ -98,9 +97,7 @@ class Standing(LeafSystem):
         """
         if stage == ASLEEP:
             context.SetAbstractState(int(self._held), self._contacts.Eval(context))
-        context.SetDiscreteState(int(self._stage), [stage])
-        context.SetDiscreteState(int(self._kept), self._command.Eval(context))
-        context.SetAbstractState(int(self._source), KEPT if stage == ASLEEP else DRIVES)
+        context.SetDiscreteState(int(self._stage), [stage, *self._command.Eval(context)])
 
     def stands_for(self, context: Context) -> float:
         """How long the drives have been told and have commanded the same [s], as far as this has been asked."""
@@ -118,29 +115,6 @@ class Standing(LeafSystem):
     def _now_told(self, context: Context) -> list[float]:
         desired, gripper = self._told
         return [*desired.Eval(context).tolist(), gripper.Eval(context).item(0)]
-
-
-def switch_command(builder: DiagramBuilder, standing: Standing, actuator_state: OutputPort) -> OutputPort:
-    """Give the plant the drives' command, and what was kept of it while the arm sleeps.
-
-    It is Drake's own switch, since the plant asks 240 times a second. Its output depends on the stage, too: what Drake
-    has cached of the drives' constraints while the joints were free is not to be met again when they are locked (it
-    ends the process, `CalcActuation`).
-
-    Args:
-        builder: with `standing` in it.
-        standing: says which of the two.
-        actuator_state: the drives' command, q then v. Shape (m,).
-
-    Returns:
-        What the plant is commanded. Shape (m,).
-    """
-    switch = builder.AddNamedSystem("command", PortSwitch(actuator_state.size()))
-    builder.Connect(standing.GetOutputPort("source"), switch.get_port_selector_input_port())
-    builder.Connect(actuator_state, switch.DeclareInputPort("drives"))
-    builder.Connect(standing.GetOutputPort("kept_actuator_state"), switch.DeclareInputPort("kept"))
-    builder.Connect(actuator_state, standing.GetInputPort("actuator_state"))
-    return switch.get_output_port()
 
 
 class SleepingArm:
