@@ -16,6 +16,9 @@ NEAR, NEAR_TURN = 0.010, 0.10
 """[m], [rad] From the tool to the sample it is led back to, for the next one to come: two samples at full speed."""
 UNDO_S = 2.0
 """[s] Of motion that one Undo takes back."""
+PATIENCE = 40
+"""Samples near the end of the way back after which it ends: what was recorded while the tool pressed on a table is not
+reached again to the millimetre."""
 MOST = 12_000
 """Samples that are kept: ten minutes of motion, 60 m."""
 
@@ -46,6 +49,7 @@ class TaughtPath:
         recording: whether what is moved now is.
         back_to: how many samples are left when the way back ends; -1 while there is none.
         then_record: whether it records from there on.
+        waited: how many samples long the tool has been near the end of the way back.
     """
 
     poses: np.ndarray
@@ -53,6 +57,7 @@ class TaughtPath:
     recording: bool = False
     back_to: int = -1
     then_record: bool = False
+    waited: int = 0
 
     @property
     def leads_back(self) -> bool:
@@ -92,7 +97,7 @@ class TaughtPath:
             word: said now.
             pushed: whether the hand moves the tool: that ends the way back.
         """
-        path = self
+        path = self if word is Word.NOTHING else replace(self, waited=0)
         if word is Word.STAND or (pushed and path.leads_back):
             path = replace(path, back_to=-1, then_record=False)
         if word is Word.RECORD and not path.recording:
@@ -132,13 +137,13 @@ class TaughtPath:
 
     def _back(self, pose: np.ndarray) -> TaughtPath:
         left = len(self.poses)
+        far, turned = off(pose, self.poses[-1]) if left else (0.0, 0.0)
+        away = max(far / NEAR, turned / NEAR_TURN)
+        if away > 1.0:
+            return self  # the tool is still on its way to this one
         if left > max(self.back_to, 1):
-            far, turned = off(pose, self.poses[-1])
-            if far > NEAR or turned > NEAR_TURN:
-                return self  # the tool is still on its way to this one
             left -= 1
             return replace(self, poses=self.poses[:left], kept=min(self.kept, left))
-        far, turned = off(pose, self.poses[-1]) if left else (0.0, 0.0)
-        if far > NEAR / 4 or turned > NEAR_TURN / 4:
-            return self
+        if away > 0.25 and self.waited < PATIENCE:
+            return replace(self, waited=self.waited + 1)
         return replace(self, back_to=-1, recording=self.then_record, then_record=False)

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from canal.errors import InputError
-from diagrams.teach.path import MOST, UNDO_S, TaughtPath, Word
+from diagrams.teach.path import MOST, PATIENCE, UNDO_S, TaughtPath, Word
 
 EMPTY = TaughtPath(np.empty((0, 7)))
 
@@ -60,6 +60,19 @@ def test_the_way_back_waits_for_the_tool():
     for _ in range(50):
         path = path.moved(pose(140))  # something holds it
     assert len(path.poses) == 100
+
+
+def test_the_way_back_ends_where_the_tool_comes_no_nearer():
+    pressed = np.array([0.0, 0.0, 0.006, 0.0, 0.0, 0.0, 0.0])  # a table that it pressed on keeps it so far off
+    path = walk(EMPTY.told(Word.RECORD, pushed=False), 0, 30).told(Word.BACK, pushed=False)
+    samples = 0
+    while path.leads_back:
+        path = path.moved(path.poses[-1] + pressed)
+        samples += 1
+    assert len(path.poses) == 1
+    assert samples == 29 + PATIENCE + 1
+    again = walk(path, 100, 130).told(Word.BACK, pushed=False)
+    assert again.waited == 0, "it waits as long the next time"
 
 
 def test_a_push_ends_the_way_back():
